@@ -27,37 +27,32 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string kind_text(const Key& key, const std::string& page) {
-  const std::string words = key.choices.empty() ? "" : joined(key.choices);
-  switch (key.kind) {
-    case Kind::number:
-      return words.empty() ? "number" : "number or " + words;
-    case Kind::integer:
-      return words.empty() ? "integer" : "integer or " + words;
-    case Kind::boolean:
-      return "true or false";
-    case Kind::text:
-      return words.empty() ? "text" : words;
-    case Kind::path:
-      return "path";
-    case Kind::vector:
-      return "[x, y, z]";
-    case Kind::pair:
-      return "number or [a, b]";
-    case Kind::numbers:
-      return "number or list of numbers";
-    case Kind::integers:
-      return "integer or list of integers";
-    case Kind::texts:
-      return "text or list of texts";
-    case Kind::section:
-      return "see [" + key.section->name + "](" + page + "#" + key.section->name + ")";
-    case Kind::sections:
-      return "list of [" + key.section->name + "](" + page + "#" + key.section->name + ")";
-  }
-  return {};
+  const std::string name(names_of(key.kind).in_tables);
+  if (key.kind == Kind::section || key.kind == Kind::sections)
+    return name + "[" + key.section->name + "](" + page + "#" + key.section->name + ")";
+  if (key.choices.empty()) return name;
+  if (key.kind == Kind::number || key.kind == Kind::integer) return name + " or " + joined(key.choices);
+  return key.kind == Kind::text ? joined(key.choices) : name;
 }
 
 }  // namespace
+
+const KindNames& names_of(Kind kind) {
+  static constexpr KindNames all[] = {
+      {Kind::number, "number", "a number"},
+      {Kind::integer, "integer", "an integer"},
+      {Kind::boolean, "true or false", "true or false"},
+      {Kind::text, "text", "text"},
+      {Kind::path, "path", "a path"},
+      {Kind::vector, "[x, y, z]", "three numbers [x, y, z]", true},
+      {Kind::pair, "number or [a, b]", "a number or two of them [a, b]", true},
+      {Kind::numbers, "number or list of numbers", "a number or a list of them", true},
+      {Kind::integers, "integer or list of integers", "an integer or a list of them", true},
+      {Kind::texts, "text or list of texts", "a text or a list of them", true},
+      {Kind::section, "see ", "keys "},
+      {Kind::sections, "list of ", "a list of sections with keys "}};
+  return *std::ranges::find(all, kind, &KindNames::kind);
+}
 
 bool Range::has(double value) const {
   return (low_in ? value >= low : value > low) && (high_in ? value <= high : value < high);
@@ -114,19 +109,14 @@ std::string joined(const std::vector<std::string>& words) {
   return list;
 }
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  std::string best;
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  std::string near;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
   for (const std::string& candidate : known)
     if (const std::size_t distance = edit_distance(word, candidate); distance < best_distance) {
-      best = candidate;
+      near = candidate;
       best_distance = distance;
     }
-  return best;
-}
-
-std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
-  const std::string near = nearest_word(word, known);
   return near.empty() ? "" : "; did you mean `" + near + "`?";
 }
 

@@ -13,6 +13,15 @@ namespace selvedge {
 
 enum class Kind { number, integer, boolean, text, path, vector, pair, numbers, integers, texts, section, sections };
 
+// How a kind is called in tables of keys and in errors. The names of a section's kinds go on with the section.
+struct KindNames {
+  Kind kind;
+  std::string_view in_tables, in_errors;
+  bool list = false;  // values of it are written as lists
+};
+
+const KindNames& names_of(Kind);
+
 struct Range {
   double low = -1e300, high = 1e300;
   bool low_in = true, high_in = true;  // whether the end itself is allowed
@@ -93,9 +102,7 @@ Config read_values(const Section&, const std::vector<GivenValue>&);
 // The whole configuration, defaults filled in, as YAML that reads back to the same.
 std::string to_yaml(const Config&);
 
-// The known word with the smallest edit distance, empty if none is near.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
-// "; did you mean `x`?" or nothing, for error messages.
+// "; did you mean `x`?" with the known word of the smallest edit distance, for error messages; empty if none is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 std::string joined(const std::vector<std::string>& words);
 

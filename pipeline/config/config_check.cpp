@@ -34,45 +34,9 @@ std::string shown(const YAML::Node& node) {
 }
 
 std::string expected(const Key& key) {
-  std::string kind;
-  switch (key.kind) {
-    case Kind::number:
-      kind = "a number";
-      break;
-    case Kind::integer:
-      kind = "an integer";
-      break;
-    case Kind::boolean:
-      kind = "true or false";
-      break;
-    case Kind::text:
-      kind = key.choices.empty() ? "text" : joined(key.choices);
-      break;
-    case Kind::path:
-      kind = "a path";
-      break;
-    case Kind::vector:
-      kind = "three numbers [x, y, z]";
-      break;
-    case Kind::pair:
-      kind = "a number or two of them [a, b]";
-      break;
-    case Kind::numbers:
-      kind = "a number or a list of them";
-      break;
-    case Kind::integers:
-      kind = "an integer or a list of them";
-      break;
-    case Kind::texts:
-      kind = "a text or a list of them";
-      break;
-    case Kind::section:
-      kind = "keys " + joined(key_names(*key.section));
-      break;
-    case Kind::sections:
-      kind = "a list of sections with keys " + joined(key_names(*key.section));
-      break;
-  }
+  std::string kind(names_of(key.kind).in_errors);
+  if (key.kind == Kind::text && !key.choices.empty()) kind = joined(key.choices);
+  if (key.kind == Kind::section || key.kind == Kind::sections) kind += joined(key_names(*key.section));
   if (key.unit != Unit::none)
     kind += " in " + unit_symbol(key.unit) + " or with a unit (" + unit_symbols(key.unit) + ")";
   if (const std::string range = key.range.text(); !range.empty()) kind += ", " + range;
@@ -96,8 +60,7 @@ void check_number(const Check& check, const YAML::Node& node) {
 void check_word(const Check& check, const YAML::Node& node) {
   const Key& key = check.key();
   if (!node.IsScalar() || node.Scalar().empty()) check.fail(node, "is " + shown(node), expected(key));
-  bool known = key.choices.empty();
-  for (const std::string& choice : key.choices) known = known || choice == node.Scalar();
+  const bool known = key.choices.empty() || std::ranges::count(key.choices, node.Scalar()) > 0;
   if (!known) check.fail(node, "is " + shown(node), expected(key) + suggestion(node.Scalar(), key.choices));
   check.out.words.push_back(node.Scalar());
 }
@@ -197,9 +160,7 @@ Config checked_entry(const YAML::Node& node, const Key& key, const Config& paren
 bool is_plain(const YAML::Node& node, const Section& section) {
   const Key* key = section.shorthand.empty() ? nullptr : find_key(section, section.shorthand);
   if (!key) return false;
-  const bool takes_list = key->kind == Kind::vector || key->kind == Kind::pair || key->kind == Kind::numbers ||
-                          key->kind == Kind::integers || key->kind == Kind::texts;
-  return node.IsScalar() || (takes_list && node.IsSequence());
+  return node.IsScalar() || (names_of(key->kind).list && node.IsSequence());
 }
 
 }  // namespace

@@ -19,84 +19,66 @@ std::string show(const T& value) {
   return fmt::format("{}", value);
 }
 
-inline Key number(std::string name, Unit unit, Range range, std::string otherwise, std::string about) {
+inline Key of_kind(Kind kind, std::string name, std::string otherwise, std::string about, Unit unit = Unit::none,
+                   Range range = {}) {
   return {.name = std::move(name),
-          .kind = Kind::number,
+          .kind = kind,
           .about = std::move(about),
           .unit = unit,
           .range = range,
           .otherwise = std::move(otherwise)};
+}
+inline Key with_words(Key key, std::vector<std::string> choices) {
+  key.choices = std::move(choices);
+  return key;
+}
+inline Key number(std::string name, Unit unit, Range range, std::string otherwise, std::string about) {
+  return of_kind(Kind::number, std::move(name), std::move(otherwise), std::move(about), unit, range);
 }
 inline Key integer(std::string name, Range range, std::string otherwise, std::string about) {
-  return {.name = std::move(name),
-          .kind = Kind::integer,
-          .about = std::move(about),
-          .range = range,
-          .otherwise = std::move(otherwise)};
+  return of_kind(Kind::integer, std::move(name), std::move(otherwise), std::move(about), Unit::none, range);
 }
 inline Key flag(std::string name, bool otherwise, std::string about) {
-  return {.name = std::move(name), .kind = Kind::boolean, .about = std::move(about), .otherwise = show(otherwise)};
-}
-inline Key word(std::string name, std::vector<std::string> choices, std::string otherwise, std::string about) {
-  return {.name = std::move(name),
-          .kind = Kind::text,
-          .about = std::move(about),
-          .otherwise = std::move(otherwise),
-          .choices = std::move(choices)};
-}
-inline Key text(std::string name, std::string about) {
-  return {.name = std::move(name), .kind = Kind::text, .about = std::move(about)};
+  return of_kind(Kind::boolean, std::move(name), show(otherwise), std::move(about));
 }
 inline Key named(std::string name, std::string otherwise, std::string about) {
-  return {.name = std::move(name), .kind = Kind::text, .about = std::move(about), .otherwise = std::move(otherwise)};
+  return of_kind(Kind::text, std::move(name), std::move(otherwise), std::move(about));
+}
+inline Key text(std::string name, std::string about) { return named(std::move(name), {}, std::move(about)); }
+inline Key word(std::string name, std::vector<std::string> choices, std::string otherwise, std::string about) {
+  return with_words(named(std::move(name), std::move(otherwise), std::move(about)), std::move(choices));
 }
 inline Key path(std::string name, std::string about) {
-  return {.name = std::move(name), .kind = Kind::path, .about = std::move(about)};
+  return of_kind(Kind::path, std::move(name), {}, std::move(about));
 }
 inline Key vector(std::string name, Unit unit, std::string otherwise, std::string about) {
-  return {.name = std::move(name),
-          .kind = Kind::vector,
-          .about = std::move(about),
-          .unit = unit,
-          .otherwise = std::move(otherwise)};
+  return of_kind(Kind::vector, std::move(name), std::move(otherwise), std::move(about), unit);
 }
 inline Key pair(std::string name, Unit unit, std::string otherwise, std::string about, Range range = positive) {
-  return {.name = std::move(name),
-          .kind = Kind::pair,
-          .about = std::move(about),
-          .unit = unit,
-          .range = range,
-          .otherwise = std::move(otherwise)};
+  return of_kind(Kind::pair, std::move(name), std::move(otherwise), std::move(about), unit, range);
 }
 inline Key numbers(std::string name, Range range, std::string about) {
-  return {.name = std::move(name), .kind = Kind::numbers, .about = std::move(about), .range = range};
+  return of_kind(Kind::numbers, std::move(name), {}, std::move(about), Unit::none, range);
 }
 inline Key integers(std::string name, Range range, int most, std::string about) {
   return {.name = std::move(name), .kind = Kind::integers, .about = std::move(about), .range = range, .most = most};
 }
 inline Key texts(std::string name, std::string about) {
-  return {.name = std::move(name), .kind = Kind::texts, .about = std::move(about)};
+  return of_kind(Kind::texts, std::move(name), {}, std::move(about));
+}
+inline Key of_sections(Kind kind, std::string name, const Section& table, std::string otherwise, std::string about) {
+  Key key = of_kind(kind, std::move(name), std::move(otherwise), std::move(about));
+  key.section = &table;
+  return key;
 }
 inline Key section(const Section& table, std::string otherwise, std::string about) {
-  return {.name = table.name,
-          .kind = Kind::section,
-          .about = std::move(about),
-          .otherwise = std::move(otherwise),
-          .section = &table};
+  return of_sections(Kind::section, table.name, table, std::move(otherwise), std::move(about));
 }
 inline Key sections(std::string name, const Section& table, std::string otherwise, std::string about) {
-  return {.name = std::move(name),
-          .kind = Kind::sections,
-          .about = std::move(about),
-          .otherwise = std::move(otherwise),
-          .section = &table};
+  return of_sections(Kind::sections, std::move(name), table, std::move(otherwise), std::move(about));
 }
 inline Key needed(Key key) {
   key.required = true;
-  return key;
-}
-inline Key with_words(Key key, std::vector<std::string> choices) {
-  key.choices = std::move(choices);
   return key;
 }
 

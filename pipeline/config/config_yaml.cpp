@@ -84,9 +84,7 @@ void emit_value(YAML::Emitter& out, const Config& entry) {
     out << YAML::EndSeq;
     return;
   }
-  const bool list = entry.key->kind == Kind::vector || entry.key->kind == Kind::pair ||
-                    entry.key->kind == Kind::numbers || entry.key->kind == Kind::integers ||
-                    entry.key->kind == Kind::texts;
+  const bool list = names_of(entry.key->kind).list;
   if (list) out << YAML::Flow << YAML::BeginSeq;
   for (const double number : entry.numbers) {
     if (entry.key->kind == Kind::boolean)

@@ -35,9 +35,7 @@ std::string default_text(const Config& entry) {
   std::vector<std::string> values = entry.words;
   for (const double number : entry.numbers)
     values.push_back(entry.key->kind == Kind::boolean ? table::show(number != 0) : table::show(number));
-  const bool list =
-      entry.key->kind == Kind::vector || entry.key->kind == Kind::numbers || entry.key->kind == Kind::texts;
-  return list && !values.empty() ? "[" + joined(values) + "]" : joined(values);
+  return names_of(entry.key->kind).list && !values.empty() ? "[" + joined(values) + "]" : joined(values);
 }
 
 Config empty_section(const Section& section) {
