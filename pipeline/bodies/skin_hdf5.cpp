@@ -14,8 +14,7 @@ SkinnedSurface read_skin(const Fields& fields, Eigen::Index joints) {
 
 void write_skin(const File& file, const SkinnedSurface& skin) {
   write_points(file, "rest", skin.rest);
-  file.write_constant("triangles", H5T_NATIVE_INT32, {static_cast<hsize_t>(skin.triangles.rows()), 3},
-                      skin.triangles.data());
+  write_triangles(file, "triangles", skin.triangles);
   write_sparse(file, "weights", skin.weights);
   write_directions(file, "shape_directions", skin.shape_directions);
   write_directions(file, "pose_directions", skin.pose_directions);

@@ -51,6 +51,7 @@ const KindNames& names_of(Kind kind) {
       {Kind::texts, "text or list of texts", "a text or a list of them", true},
       {Kind::section, "see ", "keys "},
       {Kind::sections, "list of ", "a list of sections with keys "}};
+  static_assert(std::size(all) == 1 + static_cast<std::size_t>(Kind::sections));
   return *std::ranges::find(all, kind, &KindNames::kind);
 }
 

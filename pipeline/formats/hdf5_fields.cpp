@@ -112,6 +112,10 @@ void write_points(const File& file, const std::string& name, const Points& point
   file.write_constant(name, H5T_NATIVE_DOUBLE, extents({points.rows(), 3}), points.data());
 }
 
+void write_triangles(const File& file, const std::string& name, const Triangles& triangles) {
+  file.write_constant(name, H5T_NATIVE_INT32, extents({triangles.rows(), 3}), triangles.data());
+}
+
 void write_sparse(const File& file, const std::string& name, const SparseRows& matrix) {
   SparseRows rows = matrix;
   rows.makeCompressed();

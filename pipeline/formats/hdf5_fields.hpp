@@ -52,6 +52,7 @@ class Fields {
 void write_integers(const File&, const std::string& name, const std::vector<int>&);
 void write_numbers(const File&, const std::string& name, const std::vector<double>&);
 void write_points(const File&, const std::string& name, const Points&);
+void write_triangles(const File&, const std::string& name, const Triangles&);
 void write_sparse(const File&, const std::string& name, const SparseRows&);
 void write_directions(const File&, const std::string& name, const Eigen::MatrixXd&);
 

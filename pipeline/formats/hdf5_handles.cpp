@@ -61,6 +61,53 @@ Handle file_creation() {
   return creation;
 }
 
+// Access properties for datasets and links that never lead into another file.
+Handle within_the_file(hid_t kind) {
+  Handle access(H5Pcreate(kind), H5Pclose);
+  H5Pset_elink_cb(
+      access.id(),
+      [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
+      nullptr);
+  return access;
+}
+
+std::string type_text(hid_t type) {
+  const std::string bits = std::to_string(8 * H5Tget_size(type)) + "-bit ";
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind == H5T_INTEGER) return bits + "integers";
+  if (kind == H5T_FLOAT) return bits + "floating-point numbers";
+  if (kind == H5T_STRING) return "texts";
+  return kind == H5T_COMPOUND ? "rows of named columns" : "values of another kind";
+}
+
+// The name of a dataset in its file.
+std::string name_of(hid_t dataset) {
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Iget_name(dataset, nullptr, 0), 0)), '\0');
+  if (!name.empty()) H5Iget_name(dataset, name.data(), name.size() + 1);
+  return name.starts_with('/') ? name.substr(1) : name;
+}
+
+std::string shape_text(const std::vector<hsize_t>& shape) {
+  std::string text;
+  for (const hsize_t extent : shape) text += (text.empty() ? "" : " x ") + std::to_string(extent);
+  return shape.empty() ? "a single value" : text;
+}
+
+// File and memory selections of whole rows.
+struct Rows {
+  Handle file, memory;
+};
+
+Rows select_rows(hid_t dataset, const std::vector<hsize_t>& shape, hsize_t first, hsize_t count) {
+  std::vector<hsize_t> start(shape.size(), 0), extent = shape;
+  start[0] = first;
+  extent[0] = count;
+  Rows rows{Handle(H5Dget_space(dataset), H5Sclose),
+            Handle(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose)};
+  H5Sselect_hyperslab(rows.file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
+  return rows;
+}
+
 }  // namespace
 
 hid_t checked(hid_t result, const std::filesystem::path& file, const std::string& doing) {
@@ -163,20 +210,6 @@ Handle File::make_growing(const std::string& name, hid_t type, const std::vector
       H5Dclose};
 }
 
-namespace {
-
-// Access properties for datasets and links that never lead into another file.
-Handle within_the_file(hid_t kind) {
-  Handle access(H5Pcreate(kind), H5Pclose);
-  H5Pset_elink_cb(
-      access.id(),
-      [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
-      nullptr);
-  return access;
-}
-
-}  // namespace
-
 Handle File::open_dataset(const std::string& name) const {
   const Handle access = within_the_file(H5P_DATASET_ACCESS);
   return {check(H5Dopen2(id(), name.c_str(), access.id()), "find " + name), H5Dclose};
@@ -216,33 +249,6 @@ void File::check_stored(hid_t dataset, const std::string& name) const {
   if (wanted > little && wanted / most_packed >= stored)
     fail(name, "declares " + std::to_string(wanted) + " bytes, of which " + std::to_string(stored) + " are stored");
 }
-
-namespace {
-
-std::string type_text(hid_t type) {
-  const std::string bits = std::to_string(8 * H5Tget_size(type)) + "-bit ";
-  switch (H5Tget_class(type)) {
-    case H5T_INTEGER:
-      return bits + "integers";
-    case H5T_FLOAT:
-      return bits + "floating-point numbers";
-    case H5T_STRING:
-      return "texts";
-    case H5T_COMPOUND:
-      return "rows of named columns";
-    default:
-      return "values of another kind";
-  }
-}
-
-// The name of a dataset in its file.
-std::string name_of(hid_t dataset) {
-  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Iget_name(dataset, nullptr, 0), 0)), '\0');
-  if (!name.empty()) H5Iget_name(dataset, name.data(), name.size() + 1);
-  return name.starts_with('/') ? name.substr(1) : name;
-}
-
-}  // namespace
 
 // Columns that the file lacks are left as they are.
 void File::check_type(hid_t dataset, hid_t wanted, const std::string& name) const {
@@ -302,16 +308,6 @@ std::vector<std::string> File::read_texts(const std::string& name) const {
   return texts;
 }
 
-namespace {
-
-std::string shape_text(const std::vector<hsize_t>& shape) {
-  std::string text;
-  for (const hsize_t extent : shape) text += (text.empty() ? "" : " x ") + std::to_string(extent);
-  return shape.empty() ? "a single value" : text;
-}
-
-}  // namespace
-
 void File::read_all(const std::string& name, hid_t type, const std::vector<hsize_t>& wanted, void* data) const {
   const Handle dataset = open_dataset(name);
   const std::vector<hsize_t> found = shape(dataset.id());
@@ -321,25 +317,6 @@ void File::read_all(const std::string& name, hid_t type, const std::vector<hsize
   check_stored(dataset.id(), name);
   check(H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "read " + name);
 }
-
-namespace {
-
-// File and memory selections of whole rows.
-struct Rows {
-  Handle file, memory;
-};
-
-Rows select_rows(hid_t dataset, const std::vector<hsize_t>& shape, hsize_t first, hsize_t count) {
-  std::vector<hsize_t> start(shape.size(), 0), extent = shape;
-  start[0] = first;
-  extent[0] = count;
-  Rows rows{Handle(H5Dget_space(dataset), H5Sclose),
-            Handle(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose)};
-  H5Sselect_hyperslab(rows.file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
-  return rows;
-}
-
-}  // namespace
 
 void File::write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* data) const {
   if (count == 0) return;

@@ -18,15 +18,25 @@ namespace {
 
 enum class Encoding { ascii, little, big };
 
+template <class T>
+double as(const std::array<unsigned char, 8>& bytes) {
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  return static_cast<double>(value);
+}
+
 struct Type {
   std::string_view name, other_name;
   std::size_t size;
-  char kind;  // i, u, f
+  double (*value)(const std::array<unsigned char, 8>& bytes);
+  bool whole = true;  // an integer
 };
-constexpr std::array types = {Type{"char", "int8", 1, 'i'},     Type{"uchar", "uint8", 1, 'u'},
-                              Type{"short", "int16", 2, 'i'},   Type{"ushort", "uint16", 2, 'u'},
-                              Type{"int", "int32", 4, 'i'},     Type{"uint", "uint32", 4, 'u'},
-                              Type{"float", "float32", 4, 'f'}, Type{"double", "float64", 8, 'f'}};
+
+constexpr std::array types = {
+    Type{"char", "int8", 1, as<std::int8_t>},      Type{"uchar", "uint8", 1, as<std::uint8_t>},
+    Type{"short", "int16", 2, as<std::int16_t>},   Type{"ushort", "uint16", 2, as<std::uint16_t>},
+    Type{"int", "int32", 4, as<std::int32_t>},     Type{"uint", "uint32", 4, as<std::uint32_t>},
+    Type{"float", "float32", 4, as<float>, false}, Type{"double", "float64", 8, as<double>, false}};
 
 struct Property {
   std::string name;
@@ -103,7 +113,7 @@ void read_property(const Reader& r, const std::vector<std::string>& words, std::
   const bool list = words.size() > 1 && words[1] == "list";
   if (words.size() != (list ? 5 : 3) || elements.empty()) r.fail("is not a property of an element");
   Property property{words.back(), type_of(r, words[words.size() - 2]), list ? type_of(r, words[2]) : nullptr};
-  if (list && property.count->kind == 'f') r.fail("a list counts in integers");
+  if (list && !property.count->whole) r.fail("a list counts in integers");
   elements.back().properties.push_back(property);
 }
 
@@ -133,13 +143,6 @@ std::vector<Element> read_header(Reader& r) {
   }
 }
 
-template <class T>
-double as(const std::array<unsigned char, 8>& bytes) {
-  T value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return static_cast<double>(value);
-}
-
 double read_binary(Reader& r, const Type& type) {
   if (r.left() < type.size) r.fail("ends too early");
   std::array<unsigned char, 8> bytes{};
@@ -147,11 +150,7 @@ double read_binary(Reader& r, const Type& type) {
   r.at += type.size;
   const bool native = (r.encoding == Encoding::little) == (std::endian::native == std::endian::little);
   if (!native) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(type.size));
-  if (type.kind == 'f') return type.size == 4 ? as<float>(bytes) : as<double>(bytes);
-  const bool sign = type.kind == 'i';
-  if (type.size == 1) return sign ? as<std::int8_t>(bytes) : as<std::uint8_t>(bytes);
-  if (type.size == 2) return sign ? as<std::int16_t>(bytes) : as<std::uint16_t>(bytes);
-  return sign ? as<std::int32_t>(bytes) : as<std::uint32_t>(bytes);
+  return type.value(bytes);
 }
 
 double read_ascii(Reader& r) {

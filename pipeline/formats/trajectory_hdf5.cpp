@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
+#include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/host/version.hpp"
 
@@ -12,14 +13,6 @@ namespace selvedge {
 namespace {
 
 constexpr hsize_t report_chunk = 64, bad_chunk = 4096;
-
-void write_triangles(const h5::File& file, const std::string& name, const Triangles& triangles) {
-  file.write_constant(name, H5T_NATIVE_INT32, {static_cast<hsize_t>(triangles.rows()), 3}, triangles.data());
-}
-
-void write_ints(const h5::File& file, const std::string& name, const std::vector<int>& values) {
-  file.write_constant(name, H5T_NATIVE_INT32, {values.size()}, values.data());
-}
 
 void write_constants(const h5::File& file, const TrajectoryInfo& info) {
   file.write_text("format", "selvedge trajectory 1");
@@ -31,15 +24,15 @@ void write_constants(const h5::File& file, const TrajectoryInfo& info) {
 
   const h5::Handle cloth = file.make_group("cloth");
   file.write_texts("cloth/names", info.cloth_names);
-  write_ints(file, "cloth/first_vertex", info.cloth_first_vertex);
-  write_ints(file, "cloth/first_triangle", info.cloth_first_triangle);
-  write_triangles(file, "cloth/triangles", info.triangles);
-  file.write_constant("cloth/rest", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(info.rest.rows()), 3}, info.rest.data());
+  h5::write_integers(file, "cloth/first_vertex", info.cloth_first_vertex);
+  h5::write_integers(file, "cloth/first_triangle", info.cloth_first_triangle);
+  h5::write_triangles(file, "cloth/triangles", info.triangles);
+  h5::write_points(file, "cloth/rest", info.rest);
   // RestTriangle is column-major 2 x 3, so that a triangle's corners are stored in order: rows of 3 x (u, v).
   static_assert(sizeof(RestTriangle) == 6 * sizeof(double));
   file.write_constant("cloth/rest_triangles", H5T_NATIVE_DOUBLE, {info.rest_triangle.size(), 3, 2},
                       info.rest_triangle.data());
-  write_ints(file, "cloth/pins", info.pins);
+  h5::write_integers(file, "cloth/pins", info.pins);
 
   const h5::Handle codes = file.make_group("codes");
   for (const BoundField<Frame>& field : frame_fields())
@@ -116,7 +109,7 @@ void TrajectoryWriter::Impl::make_datasets() {
     const h5::Handle group = file.make_group(name);
     file.write_text(name + "/name", body.name);
     file.write_text(name + "/motion", body.moving ? "moving" : "still");
-    write_triangles(file, name + "/triangles", body.triangles);
+    h5::write_triangles(file, name + "/triangles", body.triangles);
     obstacles.push_back(
         file.make_growing(name + "/x", H5T_NATIVE_FLOAT, {static_cast<hsize_t>(body.vertex_count), 3}, 1));
   }

@@ -1,5 +1,7 @@
 #include "pipeline/host/html_text.hpp"
 
+#include <map>
+
 #include <fmt/format.h>
 
 namespace selvedge {
@@ -13,26 +15,13 @@ bool stands_for_itself(char c) {
 }  // namespace
 
 std::string html_text(const std::string& text) {
+  static const std::map<char, std::string> escapes{
+      {'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string result;
-  for (const char c : text) switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
+  for (const char c : text) {
+    const auto escape = escapes.find(c);
+    result += escape == escapes.end() ? std::string(1, c) : escape->second;
+  }
   return result;
 }
 
