@@ -181,28 +181,11 @@ void check_ranges(Parser& p) {
 }
 
 void cut_faces(const Parser& p, Mesh& mesh) {
-  Eigen::Index count = 0;
-  for (const Face& face : p.faces) count += static_cast<Eigen::Index>(face.end - face.begin) - 2;
-  mesh.triangles.resize(count, 3);
-  if (p.uv_count() > 0) mesh.uv_triangles.resize(count, 3);
-  std::vector<Vec3> places;
-  Eigen::Index t = 0;
-  for (const Face& face : p.faces) {
-    places.clear();
-    mesh.corner_begin.push_back(static_cast<int>(mesh.corners.size()));
-    for (std::size_t k = face.begin; k < face.end; ++k) {
-      places.push_back(row(mesh.x, p.corners[k].vertex));
-      mesh.corners.push_back(p.corners[k].vertex);
-    }
-    for (const std::array<int, 3>& triangle : polygon_triangles(places)) {
-      for (int k = 0; k < 3; ++k) {
-        const Corner& corner = p.corners[face.begin + static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-        mesh.triangles(t, k) = corner.vertex;
-        if (p.uv_count() > 0) mesh.uv_triangles(t, k) = corner.texture;
-      }
-      ++t;
-    }
-  }
+  for (const Face& face : p.faces) mesh.corner_begin.push_back(static_cast<int>(face.begin));
+  for (const Corner& corner : p.corners) mesh.corners.push_back(corner.vertex);
+  const Triangles cut = cut_polygons(mesh.x, mesh.corners, mesh.corner_begin);
+  mesh.triangles = cut.unaryExpr([&](int k) { return p.corners[k].vertex; });
+  if (p.uv_count() > 0) mesh.uv_triangles = cut.unaryExpr([&](int k) { return p.corners[k].texture; });
 }
 
 }  // namespace

@@ -241,27 +241,15 @@ void read_faces(Reader& r, const Element& element, Mesh& mesh) {
 
 // Faces may come before vertices in the file, so that they are checked and cut once all is read.
 void cut_ply_faces(const std::string& name, Mesh& mesh) {
-  std::vector<Vec3> places;
-  std::vector<std::array<int, 3>> triangles;
-  for (std::size_t f = 0; f < mesh.corner_begin.size(); ++f) {
-    const auto begin = static_cast<std::size_t>(mesh.corner_begin[f]);
-    const std::size_t end =
-        f + 1 < mesh.corner_begin.size() ? static_cast<std::size_t>(mesh.corner_begin[f + 1]) : mesh.corners.size();
-    places.clear();
-    for (std::size_t k = begin; k < end; ++k) {
-      if (mesh.corners[k] >= mesh.x.rows())
-        throw Error(fmt::format("vertex {} does not exist, the file has {}", mesh.corners[k], mesh.x.rows()),
-                    fmt::format("{}, face {}", name, f), "repair the face, or look for a missing piece of the file");
-      places.push_back(row(mesh.x, mesh.corners[k]));
-    }
-    for (const std::array<int, 3>& t : polygon_triangles(places))
-      triangles.push_back({mesh.corners[begin + static_cast<std::size_t>(t[0])],
-                           mesh.corners[begin + static_cast<std::size_t>(t[1])],
-                           mesh.corners[begin + static_cast<std::size_t>(t[2])]});
+  const auto beyond = std::ranges::find_if(mesh.corners, [&](int v) { return v >= mesh.x.rows(); });
+  if (beyond != mesh.corners.end()) {
+    const auto next = std::ranges::upper_bound(mesh.corner_begin, beyond - mesh.corners.begin());
+    throw Error(fmt::format("vertex {} does not exist, the file has {}", *beyond, mesh.x.rows()),
+                fmt::format("{}, face {}", name, next - mesh.corner_begin.begin() - 1),
+                "repair the face, or look for a missing piece of the file");
   }
-  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    mesh.triangles.row(static_cast<Eigen::Index>(t)) << triangles[t][0], triangles[t][1], triangles[t][2];
+  const Triangles cut = cut_polygons(mesh.x, mesh.corners, mesh.corner_begin);
+  mesh.triangles = cut.unaryExpr([&](int k) { return mesh.corners[k]; });
 }
 
 template <class T>

@@ -118,4 +118,17 @@ std::vector<std::array<int, 3>> polygon_triangles(std::span<const Vec3> corners)
   return triangles;
 }
 
+Triangles cut_polygons(const Points& x, const std::vector<int>& corners, const std::vector<int>& begin) {
+  Triangles cut(std::ssize(corners) - 2 * std::ssize(begin), 3);
+  std::vector<Vec3> places;
+  Eigen::Index t = 0;
+  for (std::size_t p = 0; p < begin.size(); ++p) {
+    const int end = p + 1 < begin.size() ? begin[p + 1] : static_cast<int>(corners.size());
+    places.clear();
+    for (int k = begin[p]; k < end; ++k) places.push_back(row(x, corners[k]));
+    for (const auto& [a, b, c] : polygon_triangles(places)) cut.row(t++) << begin[p] + a, begin[p] + b, begin[p] + c;
+  }
+  return cut;
+}
+
 }  // namespace selvedge

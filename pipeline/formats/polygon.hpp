@@ -15,4 +15,8 @@ namespace selvedge {
 inline constexpr std::size_t most_eared_corners = 2000;
 std::vector<std::array<int, 3>> polygon_triangles(std::span<const Vec3> corners);
 
+// Cuts the polygons of a mesh so, into triangles of indices of `corners`, which are vertices. `begin`: where each
+// polygon begins among them; the last one ends with them.
+Triangles cut_polygons(const Points& x, const std::vector<int>& corners, const std::vector<int>& begin);
+
 }  // namespace selvedge
