@@ -68,7 +68,7 @@ std::vector<CollarPoint> collar_profile(double depth, double edge) {
 void append(Shape& shape, const std::vector<Vec3>& x, const std::vector<std::array<int, 3>>& triangles) {
   const Eigen::Index n = shape.x.rows(), m = shape.triangles.rows();
   shape.x.conservativeResize(n + static_cast<Eigen::Index>(x.size()), 3);
-  for (std::size_t v = 0; v < x.size(); ++v) shape.x.row(n + static_cast<Eigen::Index>(v)) = x[v].transpose();
+  shape.x.bottomRows(static_cast<Eigen::Index>(x.size())) = to_points(x);
   shape.triangles.conservativeResize(m + static_cast<Eigen::Index>(triangles.size()), 3);
   shape.triangles.bottomRows(static_cast<Eigen::Index>(triangles.size())) = to_triangles(triangles);
 }
@@ -76,16 +76,8 @@ void append(Shape& shape, const std::vector<Vec3>& x, const std::vector<std::arr
 // Two triangles for each square between rows of equally many vertices, cut across alternately.
 void add_squares(const std::vector<int>& below, const std::vector<int>& above, bool odd,
                  std::vector<std::array<int, 3>>& triangles) {
-  for (std::size_t k = 1; k < below.size(); ++k) {
-    const int a = below[k - 1], b = below[k], c = above[k], d = above[k - 1];
-    if ((k % 2 == 0) == odd) {
-      triangles.push_back({a, b, c});
-      triangles.push_back({a, c, d});
-    } else {
-      triangles.push_back({a, b, d});
-      triangles.push_back({b, c, d});
-    }
-  }
+  for (std::size_t k = 1; k < below.size(); ++k)
+    add_quad(triangles, below[k - 1], below[k], above[k], above[k - 1], (k % 2 == 0) == odd);
 }
 
 // A stitch to the nearest of the points.

@@ -18,21 +18,6 @@ struct Row {
   std::vector<double> u;
 };
 
-// Two triangles of the quad a b c d (counter-clockwise), cut from a to c or from b to d.
-void add_quad(TriangleList& triangles, int a, int b, int c, int d, bool from_a) {
-  if (from_a) {
-    triangles.push_back({a, b, c});
-    triangles.push_back({a, c, d});
-  } else {
-    triangles.push_back({a, b, d});
-    triangles.push_back({b, c, d});
-  }
-}
-
-bool cut_from_a(Triangulation triangulation, int i, int j) {
-  return triangulation != Triangulation::alternating || (i + j) % 2 == 0;
-}
-
 // Rows of equal length, cut quad by quad; if `closed` the last column is joined to the first.
 TriangleList structured(int columns, int rows, bool closed, Triangulation triangulation) {
   TriangleList triangles;
@@ -148,6 +133,26 @@ void add_strip(std::vector<std::array<int, 3>>& triangles, std::span<const int> 
       ++j;
     }
   }
+}
+
+void add_quad(std::vector<std::array<int, 3>>& triangles, int a, int b, int c, int d, bool from_a) {
+  if (from_a) {
+    triangles.push_back({a, b, c});
+    triangles.push_back({a, c, d});
+  } else {
+    triangles.push_back({a, b, d});
+    triangles.push_back({b, c, d});
+  }
+}
+
+bool cut_from_a(Triangulation triangulation, int i, int j) {
+  return triangulation != Triangulation::alternating || (i + j) % 2 == 0;
+}
+
+Points to_points(const std::vector<Vec3>& list) {
+  Points x(static_cast<Eigen::Index>(list.size()), 3);
+  for (std::size_t v = 0; v < list.size(); ++v) x.row(static_cast<Eigen::Index>(v)) = list[v].transpose();
+  return x;
 }
 
 Triangles to_triangles(const std::vector<std::array<int, 3>>& list) {

@@ -66,6 +66,13 @@ Mesh make_tshirt(const TshirtShape&);
 void add_strip(std::vector<std::array<int, 3>>& triangles, std::span<const int> below, std::span<const double> u_below,
                std::span<const int> above, std::span<const double> u_above);
 
+// Two triangles of the quad a b c d (counter-clockwise), cut from a to c or from b to d.
+void add_quad(std::vector<std::array<int, 3>>& triangles, int a, int b, int c, int d, bool from_a);
+
+// Whether the quad in column i and row j is cut from its first corner.
+bool cut_from_a(Triangulation, int i, int j);
+
+Points to_points(const std::vector<Vec3>&);
 Triangles to_triangles(const std::vector<std::array<int, 3>>&);
 
 using Points2 = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;

@@ -28,10 +28,8 @@ Flat lattice(const Vec2& cell, double angle, int n, Triangulation triangulation)
     for (int i = -n; i <= n; ++i) flat.uv.emplace_back(i * a + j * b);
   for (int j = 0; j + 1 < row; ++j)
     for (int i = 0; i + 1 < row; ++i) {
-      const int p = j * row + i, q = p + 1, r = q + row, s = p + row;
-      const bool rising = triangulation != Triangulation::alternating || (i + j) % 2 == 0;
-      flat.triangles.push_back(rising ? std::array{p, q, r} : std::array{p, q, s});
-      flat.triangles.push_back(rising ? std::array{p, r, s} : std::array{q, r, s});
+      const int p = j * row + i;
+      add_quad(flat.triangles, p, p + 1, p + 1 + row, p + row, cut_from_a(triangulation, i, j));
     }
   return flat;
 }

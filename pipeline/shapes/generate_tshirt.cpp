@@ -81,17 +81,13 @@ Mesh make_tshirt(const TshirtShape& shape) {
         if (!grid.has_square(i, j)) continue;
         const auto at = [&](int p, int q) { return index.at({p, q, grid.at_seam(p, q) ? 0 : side}); };
         const int a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-        const bool from_a = (i + j) % 2 == 0;
-        std::array<std::array<int, 3>, 2> cut{from_a ? std::array{a, b, c} : std::array{a, b, d},
-                                              from_a ? std::array{a, c, d} : std::array{b, c, d}};
-        for (auto& triangle : cut) {
-          if (side < 0) std::swap(triangle[1], triangle[2]);
-          triangles.push_back(triangle);
-        }
+        add_quad(triangles, a, b, c, d, (i + j) % 2 == 0);
+        if (side > 0) continue;
+        for (auto triangle = triangles.end() - 2; triangle != triangles.end(); ++triangle)
+          std::swap((*triangle)[1], (*triangle)[2]);
       }
   Mesh mesh;
-  mesh.x.resize(static_cast<Eigen::Index>(x.size()), 3);
-  for (std::size_t v = 0; v < x.size(); ++v) mesh.x.row(static_cast<Eigen::Index>(v)) = x[v].transpose();
+  mesh.x = to_points(x);
   mesh.triangles = to_triangles(triangles);
   mesh.groups.assign(groups.begin(), groups.end());
   return mesh;

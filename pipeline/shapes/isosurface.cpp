@@ -103,11 +103,7 @@ Shape isosurface(const std::function<double(const Vec3&)>& value, const Vec3& lo
           for (const auto& tetrahedron : tetrahedra) march(grid, node, tetrahedron);
         }
       }
-  Shape shape;
-  shape.x.resize(static_cast<Eigen::Index>(grid.x.size()), 3);
-  for (std::size_t v = 0; v < grid.x.size(); ++v) shape.x.row(static_cast<Eigen::Index>(v)) = grid.x[v].transpose();
-  shape.triangles = to_triangles(grid.triangles);
-  return shape;
+  return {to_points(grid.x), to_triangles(grid.triangles)};
 }
 
 }  // namespace selvedge

@@ -15,12 +15,6 @@ using TriangleList = std::vector<std::array<int, 3>>;
 
 int pieces(double length, double edge) { return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-9))); }
 
-Points to_points(const std::vector<Vec3>& list) {
-  Points x(static_cast<Eigen::Index>(list.size()), 3);
-  for (std::size_t v = 0; v < list.size(); ++v) x.row(static_cast<Eigen::Index>(v)) = list[v].transpose();
-  return x;
-}
-
 struct Icosahedron {
   std::vector<Vec3> corners;
   TriangleList faces;
@@ -139,10 +133,7 @@ Shape make_revolution(const std::vector<Vec2>& profile, bool closed, double edge
   assert(profile.size() >= 2 && edge > 0);
   const std::size_t count = profile.size();
   double doubled_area = 0;  // of the profile closed along the axis; positive: it runs up on the outside
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec2 &a = profile[k], &b = profile[(k + 1) % count];
-    doubled_area += a.x() * b.y() - b.x() * a.y();
-  }
+  for (std::size_t k = 0; k < count; ++k) doubled_area += cross(profile[k], profile[(k + 1) % count]);
   std::vector<Vec2> line = profile;
   if (doubled_area < 0) std::reverse(line.begin(), line.end());
   std::vector<Ring> rings;

@@ -296,13 +296,12 @@ void relax(Work& work, const RemeshTarget& target) {
 
 }  // namespace
 
-Shape remeshed(Shape shape, const RemeshTarget& target, int rounds) {
+Shape remeshed(const Shape& shape, const RemeshTarget& target, int rounds) {
   constexpr double longest = 4.0 / 3, shortest = 4.0 / 5;
   constexpr int most = 30;  // rounds of one pass; the rest is left to the next pass
   Work work{{}, {}, {}, {}, target.borders, {}};
   for (int v = 0; v < shape.x.rows(); ++v) work.x.push_back(row(shape.x, v));
-  for (Eigen::Index t = 0; t < shape.triangles.rows(); ++t)
-    work.triangles.push_back({shape.triangles(t, 0), shape.triangles(t, 1), shape.triangles(t, 2)});
+  for (const auto& t : shape.triangles.rowwise()) work.triangles.push_back({t[0], t[1], t[2]});
   pack(work);
   const auto repeat = [&](const auto& pass) {
     for (int i = 0; i < most && pass(); ++i) {
@@ -319,10 +318,7 @@ Shape remeshed(Shape shape, const RemeshTarget& target, int rounds) {
     relax(work, target);
     repeat([&] { return flip_round(work, true); });
   }
-  shape.x.resize(static_cast<Eigen::Index>(work.x.size()), 3);
-  for (std::size_t v = 0; v < work.x.size(); ++v) shape.x.row(static_cast<Eigen::Index>(v)) = work.x[v].transpose();
-  shape.triangles = work.surface.triangles;
-  return shape;
+  return {to_points(work.x), work.surface.triangles};
 }
 
 }  // namespace selvedge

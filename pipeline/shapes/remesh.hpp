@@ -18,6 +18,6 @@ struct RemeshTarget {
 // surface (Botsch and Kobbelt 2004). The boundary stays in its borders. Corners between two borders stay in place (of
 // two adjacent ones only one does). No inner edge joins two boundary vertices, so that a half and its mirror image fit
 // together. Parts thinner than an edge may lose their thickness. The same input gives the same bits.
-Shape remeshed(Shape, const RemeshTarget&, int rounds);
+Shape remeshed(const Shape&, const RemeshTarget&, int rounds);
 
 }  // namespace selvedge
