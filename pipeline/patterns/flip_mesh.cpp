@@ -15,8 +15,7 @@ constexpr double clearly = 1e-9;  // relative to the scale of an in-circle deter
 bool within_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const Vec2 p = a - d, q = b - d, r = c - d;
   const double pp = p.squaredNorm(), qq = q.squaredNorm(), rr = r.squaredNorm();
-  const double det = pp * (q.x() * r.y() - q.y() * r.x()) - qq * (p.x() * r.y() - p.y() * r.x()) +
-                     rr * (p.x() * q.y() - p.y() * q.x());
+  const double det = pp * cross(q, r) - qq * cross(p, r) + rr * cross(p, q);
   const double scale = std::max({pp, qq, rr});
   return det > clearly * scale * scale;
 }
@@ -26,7 +25,7 @@ bool within_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c) {
   const auto angle = [](const Vec2& at, const Vec2& p, const Vec2& q) {
     const Vec2 u = p - at, v = q - at;
-    return std::atan2(std::abs(u.x() * v.y() - u.y() * v.x()), u.dot(v));
+    return std::atan2(std::abs(cross(u, v)), u.dot(v));
   };
   return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
 }

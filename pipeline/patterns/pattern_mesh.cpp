@@ -30,16 +30,6 @@ EdgeCounts edge_counts(const Pattern& pattern, double edge) {
   return counts;
 }
 
-// Signed area of the corners and the curves between them.
-double signed_area(const std::vector<Vec2>& outline) {
-  double twice = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return twice / 2;
-}
-
 struct CutPanel {
   PlanarMesh mesh;
   std::vector<std::vector<int>> edge_vertices;  // by edge, from end to end
@@ -56,7 +46,7 @@ CutPanel cut_panel(const Panel& panel, const std::vector<int>& counts, double ed
     outline.insert(outline.end(), points.begin(), points.end() - 1);
   }
   cut.edge_vertices[static_cast<std::size_t>(panel.loop.back())].back() = 0;
-  const bool clockwise = signed_area(outline) < 0;  // seen from the front; then the right side is the back
+  const bool clockwise = twice_area(outline) < 0;  // seen from the front; then the right side is the back
   if (clockwise)
     for (Vec2& p : outline) p.x() = -p.x();
   try {

@@ -15,14 +15,8 @@ constexpr int relaxations = 30;
 constexpr double sound_angle = 0.38;  // if a flip makes a smaller angle, an edge across a corner is cut instead [rad]
 
 FlipMesh outline_mesh(const std::vector<Vec2>& outline) {
-  const std::size_t n = outline.size();
-  double twice_area = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 &a = outline[i], &b = outline[(i + 1) % n];
-    twice_area += a.x() * b.y() - a.y() * b.x();
-  }
   const std::string cure = "draw the panel so that its outline is simple, or take a smaller edge length";
-  if (n < 3 || !(twice_area > 0)) throw Error("has no area", "outline", cure);
+  if (outline.size() < 3 || !(twice_area(outline) > 0)) throw Error("has no area", "outline", cure);
   std::vector<Vec3> corners;
   for (const Vec2& p : outline) corners.emplace_back(p.x(), p.y(), 0);
   FlipMesh mesh(outline, polygon_triangles(corners));
@@ -93,6 +87,12 @@ void part_chords(FlipMesh& mesh) {
 }
 
 }  // namespace
+
+double twice_area(const std::vector<Vec2>& outline) {
+  double sum = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) sum += cross(outline[i], outline[(i + 1) % outline.size()]);
+  return sum;
+}
 
 PlanarMesh planar_mesh(const std::vector<Vec2>& outline, double edge) {
   FlipMesh mesh = outline_mesh(outline);

@@ -12,6 +12,9 @@ struct PlanarMesh {
   Triangles triangles;       // counter-clockwise
 };
 
+// Twice the signed area of a polygon, positive where it runs counter-clockwise.
+double twice_area(const std::vector<Vec2>& outline);
+
 // Triangles of about that edge length [m] inside a simple counter-clockwise polygon. The outline's edges get no further
 // vertices. No other edge joins two vertices of the outline, so that sewing outlines together never makes two edges
 // one. A constrained Delaunay triangulation (Lawson's flips) of the outline and of a triangular lattice inside,
