@@ -73,7 +73,7 @@ Eigen::Matrix<double, 3, 4> blended(const SkinWeights& weights, Eigen::Index ver
                                     const JointTransforms& transforms) {
   Eigen::Matrix<double, 3, 4> blend = Eigen::Matrix<double, 3, 4>::Zero();
   for (SkinWeights::InnerIterator entry(weights, vertex); entry; ++entry)
-    blend += entry.value() * transforms[static_cast<std::size_t>(entry.col())];
+    blend += entry.value() * transforms[entry.col()];
   return blend;
 }
 
@@ -106,7 +106,7 @@ JointTransforms joint_transforms(const BodyModel& body, const Points& joints, co
     auto& transform = transforms[j];
     transform << turn, center - turn * center;
     if (body.parents[j] < 0) continue;
-    const auto& parent = transforms[static_cast<std::size_t>(body.parents[j])];
+    const auto& parent = transforms[body.parents[j]];
     const Mat3 parent_turn = parent.leftCols<3>();
     transform = (parent_turn * transform).eval();
     transform.col(3) += parent.col(3);
@@ -119,7 +119,7 @@ Points posed_joints(const BodyModel& body, const Points& joints, const BodyPose&
   Points x(joints.rows(), 3);
   for (Eigen::Index j = 0; j < x.rows(); ++j) {
     const Vec3 rest = joints.row(j).transpose();
-    x.row(j) = (transforms[static_cast<std::size_t>(j)] * rest.homogeneous() + pose.translation).transpose();
+    x.row(j) = (transforms[j] * rest.homogeneous() + pose.translation).transpose();
   }
   return x;
 }

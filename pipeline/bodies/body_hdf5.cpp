@@ -12,7 +12,7 @@ void write_meshes(const h5::File& file, const BodyModel& body) {
   std::vector<std::string> names;
   std::vector<int> mesh_of(static_cast<std::size_t>(body.skin.rest.rows()), -1);
   for (std::size_t m = body.meshes.size(); m-- > 0;)
-    for (const int v : body.meshes[m].second) mesh_of[static_cast<std::size_t>(v)] = static_cast<int>(m);
+    for (const int v : body.meshes[m].second) mesh_of[v] = static_cast<int>(m);
   for (const auto& [name, vertices] : body.meshes) names.push_back(name);
   file.write_texts("meshes", names);
   h5::write_integers(file, "mesh_of", mesh_of);
@@ -27,7 +27,7 @@ NamedVertices read_meshes(const h5::Fields& fields, Eigen::Index vertices) {
   for (std::size_t v = 0; v < mesh_of.size(); ++v) {
     if (mesh_of[v] < -1 || mesh_of[v] >= static_cast<int>(meshes.size()))
       fields.fail("mesh_of", "names a mesh that is not there");
-    if (mesh_of[v] >= 0) meshes[static_cast<std::size_t>(mesh_of[v])].second.push_back(static_cast<int>(v));
+    if (mesh_of[v] >= 0) meshes[mesh_of[v]].second.push_back(static_cast<int>(v));
   }
   return meshes;
 }

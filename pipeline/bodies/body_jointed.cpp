@@ -83,7 +83,7 @@ void set_weights(const Points& joints, const Config& given, BodyModel& body) {
   body.skin.weights = bone_weights(surface, body.skin.rest, joints, body.parents);
   if (!welded) return;
   std::vector<Eigen::Triplet<double>> entries;
-  for (int v = 0; v < n; ++v) entries.emplace_back(v, welded->joined[static_cast<std::size_t>(v)], 1);
+  for (int v = 0; v < n; ++v) entries.emplace_back(v, welded->joined[v], 1);
   SkinWeights of_joined(n, n);
   of_joined.setFromTriplets(entries.begin(), entries.end());
   body.skin.weights = SkinWeights(of_joined * body.skin.weights);

@@ -71,14 +71,13 @@ struct Rig {
     std::vector<int> joint(bones.size(), -1);
     const std::vector<std::string> names = smpl_joint_names(smpl::joints);
     for (std::size_t j = 0; j < names.size(); ++j)
-      for (const std::string& bone : bones_of(names[j]))
-        joint[static_cast<std::size_t>(find(bone, names[j]))] = static_cast<int>(j);
+      for (const std::string& bone : bones_of(names[j])) joint[find(bone, names[j])] = static_cast<int>(j);
     for (std::size_t b = 0; b < bones.size(); ++b)
-      for (int at = static_cast<int>(b); joint[b] < 0; at = bones[static_cast<std::size_t>(at)].parent) {
+      for (int at = static_cast<int>(b); joint[b] < 0; at = bones[at].parent) {
         if (at < 0)
           throw Error("bone `" + bones[b].name + "` hangs on none that is known", file.string(),
                       "let it hang, by its parents, on `root`");
-        joint[b] = joint[static_cast<std::size_t>(at)];
+        joint[b] = joint[at];
       }
     return joint;
   }
@@ -90,22 +89,22 @@ SkinWeights folded(const std::vector<RigWeight>& weights, const std::vector<int>
   for (const RigWeight& one : weights) {
     const auto vertex = static_cast<std::size_t>(one.vertex);
     if (one.weight > 0 && vertex < part.row_of.size() && part.row_of[vertex] >= 0)
-      entries.emplace_back(part.row_of[vertex], joints[static_cast<std::size_t>(one.bone)], one.weight);
+      entries.emplace_back(part.row_of[vertex], joints[one.bone], one.weight);
   }
   SkinWeights sums(static_cast<Eigen::Index>(part.vertices.size()), smpl::joints);
   sums.setFromTriplets(entries.begin(), entries.end());
   for (Eigen::Index v = 0; v < sums.rows(); ++v) {
     const double sum = sums.row(v).sum();
     if (sum == 0)
-      throw Error(fmt::format("has no weight for vertex {} of the body", part.vertices[static_cast<std::size_t>(v)]),
-                  file.string(), "give the weights of this mesh; vertices count from 0");
+      throw Error(fmt::format("has no weight for vertex {} of the body", part.vertices[v]), file.string(),
+                  "give the weights of this mesh; vertices count from 0");
     sums.row(v) /= sum;
   }
   return sums;
 }
 
 bool near_in_tree(int a, int b) {
-  const auto above = [](int joint) { return smpl_joint_parents()[static_cast<std::size_t>(joint)]; };
+  const auto above = [](int joint) { return smpl_joint_parents()[joint]; };
   const auto within_one = [&](int p, int q) { return p == q || above(p) == q || above(q) == p; };
   return within_one(a, b) || (above(a) >= 0 && within_one(above(a), b)) || (above(b) >= 0 && within_one(a, above(b)));
 }
@@ -135,7 +134,7 @@ std::optional<Vec3> reference(const Rig& rig, const std::string& joint, const Po
   Vec3 sum = Vec3::Zero();
   const std::vector<std::string> places = places_of(joint);
   for (const std::string& bone : places) {
-    const std::vector<int>& head = rig.bones[static_cast<std::size_t>(rig.find(bone, joint))].head;
+    const std::vector<int>& head = rig.bones[rig.find(bone, joint)].head;
     Vec3 middle = Vec3::Zero();
     for (const int v : head) {
       if (v >= mesh.rows()) return {};

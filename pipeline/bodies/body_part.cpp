@@ -18,10 +18,10 @@ std::vector<char> taken_triangles(const Mesh& mesh, const NameChoice& choice) {
   std::vector<char> taken(count, 0), grouped(count, 0);
   for (const auto& [group, vertices] : mesh.groups) {
     std::vector<char> in(static_cast<std::size_t>(mesh.x.rows()), 0);
-    for (const int v : vertices) in[static_cast<std::size_t>(v)] = 1;
+    for (const int v : vertices) in[v] = 1;
     for (std::size_t t = 0; t < count; ++t) {
       const auto corners = mesh.triangles.row(static_cast<Eigen::Index>(t));
-      if (!std::ranges::all_of(corners, [&](int v) { return in[static_cast<std::size_t>(v)] != 0; })) continue;
+      if (!std::ranges::all_of(corners, [&](int v) { return in[v] != 0; })) continue;
       grouped[t] = 1;
       if (choice.takes(group)) taken[t] = 1;
     }
@@ -46,10 +46,10 @@ BodyPart body_part(const Mesh& mesh, const std::filesystem::path& file, const Na
   std::vector<char> used(static_cast<std::size_t>(mesh.x.rows()), 0);
   std::vector<std::array<int, 3>> triangles;
   for (Eigen::Index at = 0; at < mesh.triangles.rows(); ++at) {
-    if (!taken[static_cast<std::size_t>(at)]) continue;
+    if (!taken[at]) continue;
     const auto t = mesh.triangles.row(at);
     triangles.push_back({t[0], t[1], t[2]});
-    for (int k = 0; k < 3; ++k) used[static_cast<std::size_t>(t[k])] = 1;
+    for (int k = 0; k < 3; ++k) used[t[k]] = 1;
   }
   if (triangles.empty())
     throw Error("has no faces of a body", file.string(), "the groups that are taken, or `body`, must have them");
@@ -61,8 +61,7 @@ BodyPart body_part(const Mesh& mesh, const std::filesystem::path& file, const Na
   }
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
-      part.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
-          part.row_of[static_cast<std::size_t>(triangles[t][k])];
+      part.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) = part.row_of[triangles[t][k]];
   return part;
 }
 
@@ -77,7 +76,7 @@ BodyModel body_without_rig(const Mesh& mesh, const BodyPart& part, const std::fi
   for (const auto& [group, vertices] : mesh.groups) {
     std::vector<int> kept;
     for (const int v : vertices)
-      if (const int at = part.row_of[static_cast<std::size_t>(v)]; at >= 0) kept.push_back(at);
+      if (const int at = part.row_of[v]; at >= 0) kept.push_back(at);
     if (!kept.empty()) body.meshes.emplace_back(group, std::move(kept));
   }
   return body;

@@ -137,9 +137,8 @@ SkinWeights sparse_parts(const Npz& npz, const std::string& field, Index rows, I
   Entries entries;
   for (std::size_t i = 0; i + 1 < begins.values.size(); ++i)
     for (std::int64_t k = begins.values[i]; k < begins.values[i + 1]; ++k) {
-      const int other =
-          index_of(indices.values[static_cast<std::size_t>(k)], by_rows ? cols : rows, npz.place(field + "_indices"));
-      const double value = data.values[static_cast<std::size_t>(k)];
+      const int other = index_of(indices.values[k], by_rows ? cols : rows, npz.place(field + "_indices"));
+      const double value = data.values[k];
       const int one = static_cast<int>(i);
       by_rows ? entries.emplace_back(one, other, value) : entries.emplace_back(other, one, value);
     }

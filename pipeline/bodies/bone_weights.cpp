@@ -28,7 +28,7 @@ std::vector<Bone> bones_between(const Points& joints, const std::vector<int>& pa
   std::vector<char> has_child(parents.size(), 0);
   for (std::size_t j = 1; j < parents.size(); ++j) {
     bones.push_back({parents[j], row(joints, parents[j]), row(joints, static_cast<int>(j))});
-    has_child[static_cast<std::size_t>(parents[j])] = 1;
+    has_child[parents[j]] = 1;
   }
   for (std::size_t j = 1; j < parents.size(); ++j) {
     if (has_child[j]) continue;
@@ -72,8 +72,7 @@ class Hiding {
       for (std::size_t k = begin; k < end; ++k) {
         const Vec3 p = row(rest_, lines[k].vertex);
         from.row(static_cast<Eigen::Index>(k - begin)) = p.transpose();
-        to.row(static_cast<Eigen::Index>(k - begin)) =
-            nearest_on(bones_[static_cast<std::size_t>(lines[k].bone)], p).transpose();
+        to.row(static_cast<Eigen::Index>(k - begin)) = nearest_on(bones_[lines[k].bone], p).transpose();
       }
       std::vector<Box> boxes;
       vertex_boxes(from, to, 0, boxes);
@@ -108,19 +107,18 @@ std::vector<Source> sources(const Surface& surface, const Points& rest, const st
   Eigen::MatrixXd distance(n, count);
   std::vector<std::vector<int>> order(static_cast<std::size_t>(n));
   for (int v = 0; v < n; ++v) {
-    for (int b = 0; b < count; ++b)
-      distance(v, b) = (row(rest, v) - nearest_on(bones[static_cast<std::size_t>(b)], row(rest, v))).norm();
-    auto& nearest = order[static_cast<std::size_t>(v)];
+    for (int b = 0; b < count; ++b) distance(v, b) = (row(rest, v) - nearest_on(bones[b], row(rest, v))).norm();
+    auto& nearest = order[v];
     nearest.resize(bones.size());
     std::iota(nearest.begin(), nearest.end(), 0);
     std::stable_sort(nearest.begin(), nearest.end(), [&](int a, int b) { return distance(v, a) < distance(v, b); });
   }
   const auto take = [&](int v, int rank) {
-    const auto& nearest = order[static_cast<std::size_t>(v)];
-    Source source{{}, distance(v, nearest[static_cast<std::size_t>(rank)])};
+    const auto& nearest = order[v];
+    Source source{{}, distance(v, nearest[rank])};
     for (const int b : nearest)
       if (distance(v, b) <= same * source.distance && distance(v, b) * same >= source.distance)
-        source.joints.push_back(bones[static_cast<std::size_t>(b)].joint);
+        source.joints.push_back(bones[b].joint);
     return source;
   };
 
@@ -130,23 +128,22 @@ std::vector<Source> sources(const Surface& surface, const Points& rest, const st
   std::iota(waiting.begin(), waiting.end(), 0);
   for (int rank = 0; rank < count && !waiting.empty(); ++rank) {
     std::vector<Sight> lines;
-    for (const int v : waiting)
-      lines.push_back({v, order[static_cast<std::size_t>(v)][static_cast<std::size_t>(rank)]});
+    for (const int v : waiting) lines.push_back({v, order[v][rank]});
     const std::vector<char> hidden = hiding(lines);
     std::vector<int> still;
     for (std::size_t k = 0; k < waiting.size(); ++k) {
       if (hidden[k])
         still.push_back(waiting[k]);
       else
-        found[static_cast<std::size_t>(waiting[k])] = take(waiting[k], rank);
+        found[waiting[k]] = take(waiting[k], rank);
     }
     waiting.swap(still);
   }
   std::vector<char> warm(static_cast<std::size_t>(surface.component_count), 0);
-  const auto piece = [&](int v) { return static_cast<std::size_t>(surface.component[static_cast<std::size_t>(v)]); };
-  for (int v = 0; v < n; ++v) warm[piece(v)] = warm[piece(v)] || !found[static_cast<std::size_t>(v)].joints.empty();
+  const auto piece = [&](int v) { return static_cast<std::size_t>(surface.component[v]); };
+  for (int v = 0; v < n; ++v) warm[piece(v)] = warm[piece(v)] || !found[v].joints.empty();
   for (const int v : waiting)
-    if (!warm[piece(v)]) found[static_cast<std::size_t>(v)] = take(v, 0);
+    if (!warm[piece(v)]) found[v] = take(v, 0);
   return found;
 }
 
@@ -184,7 +181,7 @@ SkinWeights bone_weights(const Surface& surface, const Points& rest, const Point
   const double spacing = std::sqrt(areas.sum() / static_cast<double>(spread));
   Eigen::MatrixXd heat = Eigen::MatrixXd::Zero(surface.vertex_count, joints.rows());
   for (int v = 0; v < surface.vertex_count; ++v) {
-    const Source& source = from[static_cast<std::size_t>(v)];
+    const Source& source = from[v];
     if (source.joints.empty()) continue;
     const double near = std::max(source.distance, 0.1 * spacing);
     const double rate = std::max(areas[v], 1e-9 * spacing * spacing) / (near * near);

@@ -12,9 +12,7 @@ constexpr double farthest_miss = 1e-4;  // largest distance of a joint from its 
 Eigen::VectorXd bends_at(const Eigen::MatrixXd& weights, const std::vector<int>& parents, int joint) {
   Eigen::VectorXd others = Eigen::VectorXd::Zero(weights.rows());
   for (int other = 0; other < weights.cols(); ++other)
-    if (other == parents[static_cast<std::size_t>(joint)] ||
-        (parents[static_cast<std::size_t>(joint)] < 0 && parents[static_cast<std::size_t>(other)] == joint))
-      others += weights.col(other);
+    if (other == parents[joint] || (parents[joint] < 0 && parents[other] == joint)) others += weights.col(other);
   return weights.col(joint).cwiseProduct(others);
 }
 
@@ -45,7 +43,7 @@ SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::option
   const Eigen::MatrixXd weights = body.skin.weights;
   std::vector<Eigen::Triplet<double>> entries;
   for (int j = 0; j < static_cast<int>(body.joints.size()); ++j) {
-    const std::string& name = body.joints[static_cast<std::size_t>(j)];
+    const std::string& name = body.joints[j];
     const Eigen::VectorXd bends = bends_at(weights, body.parents, j);
     std::vector<int> vertices;
     for (int v = 0; v < bends.size(); ++v)
@@ -55,7 +53,7 @@ SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::option
           "has no vertex that moves with both the joint " + name + " and its parent", files.weights,
           "give weights that pass smoothly from bone to bone, or places of joints between which some of the body lies");
     Eigen::VectorXd share = bends(vertices) / bends.sum();
-    const std::optional<Vec3>& place = places[static_cast<std::size_t>(j)];
+    const std::optional<Vec3>& place = places[j];
     if (place) meet(rest, vertices, *place, share);
     const Vec3 mean = rest(vertices, Eigen::all).transpose() * share;
     if (place && !((mean - *place).norm() < farthest_miss))

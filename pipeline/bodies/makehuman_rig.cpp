@@ -79,7 +79,7 @@ std::vector<int> vertices_of(const Value& list) {
 void check_tree(const Value& bones, const std::vector<RigBone>& found) {
   for (const RigBone& bone : found) {
     std::size_t steps = 0;
-    for (int above = bone.parent; above >= 0; above = found[static_cast<std::size_t>(above)].parent)
+    for (int above = bone.parent; above >= 0; above = found[above].parent)
       if (++steps > found.size())
         bones.at(bone.name).fail("hangs on itself by its parents", "bones must hang on each other without circles");
   }

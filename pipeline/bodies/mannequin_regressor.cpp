@@ -33,8 +33,8 @@ SkinWeights mannequin_regressor(const MannequinMesh& mesh) {
   const auto joints = mannequin_joints();
   std::vector<Eigen::Triplet<double>> entries;
   for (int j = 0; j < static_cast<int>(joints.size()); ++j) {
-    const std::string name = joints[static_cast<std::size_t>(j)].name;
-    const Vec3& point = joints[static_cast<std::size_t>(j)].position;
+    const std::string name = joints[j].name;
+    const Vec3& point = joints[j].position;
     const Band band = band_of(name);
     std::vector<int> vertices;
     std::vector<double> weights;

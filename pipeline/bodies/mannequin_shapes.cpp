@@ -120,7 +120,7 @@ Eigen::MatrixXd mannequin_directions(const MannequinMesh& mesh, const Eigen::Mat
   Eigen::MatrixXd directions(3 * mesh.x.rows(), static_cast<Eigen::Index>(fields.size()));
   for (int v = 0; v < mesh.half; ++v) {
     const Place at = place_of(mesh, weights, v);
-    const int twin = mesh.twin[static_cast<std::size_t>(v)];
+    const int twin = mesh.twin[v];
     for (std::size_t k = 0; k < fields.size(); ++k) {
       Vec3 d = fields[k](at);
       if (twin == v) d.x() = 0;

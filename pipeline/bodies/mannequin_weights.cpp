@@ -67,7 +67,7 @@ Eigen::RowVectorXd shares_of_tree(const std::vector<MannequinJoint>& joints, con
   for (std::size_t j = 1; j < joints.size(); ++j) {
     const MannequinJoint& joint = joints[j];
     const bool right = std::string(joint.name).starts_with("right_");
-    const MannequinJoint& left = right ? joints[static_cast<std::size_t>(other[j])] : joint;
+    const MannequinJoint& left = right ? joints[other[j]] : joint;
     const double part = subtree[joint.parent] * share(left.name, left.position, right ? mirrored : p);
     subtree[static_cast<Eigen::Index>(j)] = part;
     weights[static_cast<Eigen::Index>(j)] += part;
@@ -92,7 +92,7 @@ Eigen::MatrixXd averaged(const Surface& surface, const Eigen::MatrixXd& weights)
 void thin_out(Eigen::Ref<Eigen::RowVectorXd> weights, int most) {
   std::vector<double> sorted(weights.begin(), weights.end());
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
-  const double least = std::max(sorted[static_cast<std::size_t>(most)], 1e-3);
+  const double least = std::max(sorted[most], 1e-3);
   weights = (weights.array() > least).select(weights, 0);
   weights /= weights.sum();
 }
@@ -108,7 +108,7 @@ Eigen::MatrixXd mannequin_weights(const MannequinMesh& mesh) {
   const Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
   for (int i = 0; i < rounds; ++i) weights = averaged(surface, weights);
   for (int v = 0; v < mesh.half; ++v) {
-    const int twin = mesh.twin[static_cast<std::size_t>(v)];
+    const int twin = mesh.twin[v];
     Eigen::RowVectorXd own = weights.row(v), image = own(other);
     if (twin == v) own = 0.5 * (own + image);
     thin_out(own, most);

@@ -133,7 +133,7 @@ class Document {
   const Entry& entry(const std::vector<Entry>& list, int index, const std::string& part) const {
     if (index < 0 || index >= std::ssize(list))
       fail(part, "names entry " + std::to_string(index) + " of " + std::to_string(list.size()), "export it anew");
-    return list[static_cast<std::size_t>(index)];
+    return list[index];
   }
 
   // The numbers of an accessor, one row per element. Throws Error if it does not have `columns` columns.
@@ -243,9 +243,8 @@ std::vector<int> read_nodes(const Document& file, std::vector<GltfNode>& nodes) 
   for (std::size_t i = 0; i < given.size(); ++i)
     for (const int child : given[i].children) {
       file.entry(given, child, "node " + std::to_string(i) + ", children");
-      if (parent[static_cast<std::size_t>(child)] >= 0)
-        file.fail("node " + std::to_string(child), "has two parents", "export it anew");
-      parent[static_cast<std::size_t>(child)] = static_cast<int>(i);
+      if (parent[child] >= 0) file.fail("node " + std::to_string(child), "has two parents", "export it anew");
+      parent[child] = static_cast<int>(i);
     }
   for (std::size_t i = 0; i < given.size(); ++i)
     if (parent[i] < 0) order.push_back(static_cast<int>(i));
@@ -253,7 +252,7 @@ std::vector<int> read_nodes(const Document& file, std::vector<GltfNode>& nodes) 
     const auto i = static_cast<std::size_t>(order[k]);
     place[i] = static_cast<int>(k);
     nodes.push_back(node_of(file, i));
-    nodes.back().parent = parent[i] < 0 ? -1 : place[static_cast<std::size_t>(parent[i])];
+    nodes.back().parent = parent[i] < 0 ? -1 : place[parent[i]];
     order.insert(order.end(), given[i].children.begin(), given[i].children.end());
   }
   if (order.size() != given.size()) file.fail("nodes", "are in a circle", "export it anew");
@@ -357,18 +356,18 @@ void join_vertices(const Document& file, const std::string& name, GltfScene& sce
   std::vector<Eigen::Triplet<double>> kept;
   std::vector<double> sum(lowest.size(), 0.0);
   for (int v = 0; v < as_read; ++v) {
-    const int to = welded.empty() ? v : welded[static_cast<std::size_t>(v)];
-    if (int& low = lowest[static_cast<std::size_t>(to)]; low < 0) low = v;
+    const int to = welded.empty() ? v : welded[v];
+    if (int& low = lowest[to]; low < 0) low = v;
   }
   for (const Eigen::Triplet<double>& w : weights) {
-    const int to = welded.empty() ? w.row() : welded[static_cast<std::size_t>(w.row())];
-    if (lowest[static_cast<std::size_t>(to)] != w.row()) continue;
+    const int to = welded.empty() ? w.row() : welded[w.row()];
+    if (lowest[to] != w.row()) continue;
     kept.emplace_back(to, w.col(), w.value());
-    sum[static_cast<std::size_t>(to)] += w.value();
+    sum[to] += w.value();
   }
   scene.weights.resize(scene.mesh.x.rows(), static_cast<Eigen::Index>(scene.joints.size()));
   scene.weights.setFromTriplets(kept.begin(), kept.end());
-  for (Eigen::Index v = 0; v < scene.weights.rows(); ++v) scene.weights.row(v) /= sum[static_cast<std::size_t>(v)];
+  for (Eigen::Index v = 0; v < scene.weights.rows(); ++v) scene.weights.row(v) /= sum[v];
 }
 
 std::optional<GltfPath> path_of(const std::string& name) {
@@ -421,8 +420,7 @@ GltfScene read_gltf(const std::filesystem::path& path, const NameChoice& choice)
   if (skin.inverseBindMatrices >= 0) {
     const Numbers all = file.numbers(skin.inverseBindMatrices, 16, "skin, inverseBindMatrices");
     if (all.rows() < joints) file.fail("skin, inverseBindMatrices", "are too few", "export it anew");
-    for (int j = 0; j < joints; ++j)
-      scene.inverse_bind[static_cast<std::size_t>(j)] = Eigen::Map<const Eigen::Matrix4d>(all.data() + 16 * j);
+    for (int j = 0; j < joints; ++j) scene.inverse_bind[j] = Eigen::Map<const Eigen::Matrix4d>(all.data() + 16 * j);
   }
   std::vector<Eigen::Triplet<double>> weights;
   choice.check(add_meshes(file, number, choice, scene, weights), path.string());

@@ -90,10 +90,10 @@ SparseRows Fields::sparse(const std::string& field, Eigen::Index rows, Eigen::In
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t r = 0; r + 1 < begins.size(); ++r)
     for (int k = begins[r]; k < begins[r + 1]; ++k) {
-      const int column = indices[static_cast<std::size_t>(k)];
+      const int column = indices[k];
       if (column < 0 || column >= cols)
         fail(field + "/indices", fmt::format("has the index {}, out of range for {}", column, cols));
-      entries.emplace_back(static_cast<int>(r), column, data[static_cast<std::size_t>(k)]);
+      entries.emplace_back(static_cast<int>(r), column, data[k]);
     }
   SparseRows matrix(rows, cols);
   matrix.setFromTriplets(entries.begin(), entries.end());

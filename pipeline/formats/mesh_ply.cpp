@@ -203,15 +203,15 @@ void read_vertices(Reader& r, const Element& element, Mesh& mesh) {
   const int u = element.find({"s", "u", "texture_u"}), v = element.find({"t", "v", "texture_v"});
   if (*std::min_element(axis.begin(), axis.end()) < 0) r.fail("the vertices have no x, y and z");
   for (const int p : axis)
-    if (element.properties[static_cast<std::size_t>(p)].count) r.fail("a coordinate is a list");
+    if (element.properties[p].count) r.fail("a coordinate is a list");
   mesh.x.resize(static_cast<Eigen::Index>(element.count), 3);
   if (u >= 0 && v >= 0) mesh.uv.resize(mesh.x.rows(), 2);
   std::vector<double> values, items;
   for (Eigen::Index i = 0; i < mesh.x.rows(); ++i) {
     if (r.encoding != Encoding::ascii) r.place = fmt::format("vertex {}", i);
     read_row(r, element, -1, values, items);
-    for (int k = 0; k < 3; ++k) mesh.x(i, k) = values[static_cast<std::size_t>(axis[static_cast<std::size_t>(k)])];
-    if (mesh.uv.rows() > 0) mesh.uv.row(i) << values[static_cast<std::size_t>(u)], values[static_cast<std::size_t>(v)];
+    for (int k = 0; k < 3; ++k) mesh.x(i, k) = values[axis[k]];
+    if (mesh.uv.rows() > 0) mesh.uv.row(i) << values[u], values[v];
     if (!mesh.x.row(i).allFinite() || (mesh.uv.rows() > 0 && !mesh.uv.row(i).allFinite()))
       r.fail(fmt::format("vertex {} is not finite", i), "repair the file where it was made");
     if (mesh.x.row(i).cwiseAbs().maxCoeff() > farthest_coordinate ||
@@ -224,8 +224,7 @@ void read_vertices(Reader& r, const Element& element, Mesh& mesh) {
 
 void read_faces(Reader& r, const Element& element, Mesh& mesh) {
   const int list = element.find({"vertex_indices", "vertex_index"});
-  if (list < 0 || !element.properties[static_cast<std::size_t>(list)].count)
-    r.fail("the faces have no list `vertex_indices`");
+  if (list < 0 || !element.properties[list].count) r.fail("the faces have no list `vertex_indices`");
   std::vector<double> values, items;
   for (std::size_t f = 0; f < element.count; ++f) {
     if (r.encoding != Encoding::ascii) r.place = fmt::format("face {}", f);

@@ -43,8 +43,7 @@ PlainNetwork read_plain_network(const h5::Fields& fields, const std::string& gro
     fields.fail(group + "/form", "does not fit the sizes");
   double count = 0;
   for (int l = 0; l < layers; ++l)
-    count += (1.0 + sizes[static_cast<std::size_t>(l)] + (l == form[1] ? form[2] : 0)) *
-             sizes[static_cast<std::size_t>(l) + 1];
+    count += (1.0 + sizes[l] + (l == form[1] ? form[2] : 0)) * sizes[static_cast<std::size_t>(l) + 1];
   if (count != static_cast<double>(parameters.size())) fields.fail(group + "/parameters", "has another length");
   PlainNetwork network = make_plain_network(shape, 1);
   set_parameters(parameters, network);

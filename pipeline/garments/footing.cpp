@@ -45,7 +45,7 @@ Footing footing_of(const Points& x, const PosedSkin& rest) {
   footing.foot.resize(static_cast<std::size_t>(x.rows()));
 #pragma omp parallel for schedule(static)
   for (Eigen::Index v = 0; v < x.rows(); ++v)
-    (rest.x.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[static_cast<std::size_t>(v)]);
+    (rest.x.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[v]);
   const std::vector<double> gap = gaps(footing.foot, rest, x);
   for (std::size_t v = 0; v < gap.size(); ++v) {
     const double out = (x.row(static_cast<Eigen::Index>(v)) - rest.x.row(footing.foot[v])).norm();
@@ -58,8 +58,8 @@ Footing footing_of(const Footing& all, const std::vector<int>& vertices) {
   Footing some;
   if (all.foot.empty()) return some;
   for (const int v : vertices) {
-    some.foot.push_back(all.foot[static_cast<std::size_t>(v)]);
-    some.part.push_back(all.part[static_cast<std::size_t>(v)]);
+    some.foot.push_back(all.foot[v]);
+    some.part.push_back(all.part[v]);
   }
   return some;
 }

@@ -47,8 +47,7 @@ std::vector<Shares> all_shares(const Points& x, const SkinnedSurface& body, Fit 
   const Eigen::VectorXd areas = vertex_areas(body);
   std::vector<Shares> shares(static_cast<std::size_t>(x.rows()));
 #pragma omp parallel for schedule(static)
-  for (Eigen::Index v = 0; v < x.rows(); ++v)
-    shares[static_cast<std::size_t>(v)] = shares_of(x.row(v).transpose(), body, areas, fit, width);
+  for (Eigen::Index v = 0; v < x.rows(); ++v) shares[v] = shares_of(x.row(v).transpose(), body, areas, fit, width);
   return shares;
 }
 
@@ -59,7 +58,7 @@ void mix(const Eigen::MatrixXd& from, const std::vector<Shares>& shares, Eigen::
   if (from.cols() == 0) return;
 #pragma omp parallel for schedule(static)
   for (Eigen::Index v = 0; v < count; ++v)
-    for (const auto& [source, share] : shares[static_cast<std::size_t>(v)])
+    for (const auto& [source, share] : shares[v])
       to.middleRows(3 * v, 3) += share * from.middleRows(3 * static_cast<Eigen::Index>(source), 3);
 }
 

@@ -24,7 +24,7 @@ std::vector<Region> regions_of(const BodyModel& body) {
     const std::string& name = body.joints[j];
     const bool left = name.starts_with("left_");
     const std::string part = left || name.starts_with("right_") ? name.substr(name.find('_') + 1) : "";
-    Region region = body.parents[j] < 0 ? trunk : regions[static_cast<std::size_t>(body.parents[j])];
+    Region region = body.parents[j] < 0 ? trunk : regions[body.parents[j]];
     if (part == "collar" || part == "shoulder") region = left ? left_arm : right_arm;
     if (part == "hip") region = left ? left_leg : right_leg;
     regions.push_back(region);
@@ -43,7 +43,7 @@ BodyPlaces places_of(const BodyModel& body) {
   BodyPlaces places{regions_of(body), {}};
   const Points joints = joint_positions(body, {});
   for (int j = 0; j < joints.rows(); ++j)
-    if (places.region[static_cast<std::size_t>(j)] == trunk) places.spine.push_back(row(joints, j));
+    if (places.region[j] == trunk) places.spine.push_back(row(joints, j));
   double sum = 0;
   int count = 0;
   for (std::size_t j = 0; j < body.joints.size(); ++j)
@@ -76,7 +76,7 @@ Loop looked_at(std::vector<int> vertices, const SkinnedSurface& skin, const Body
   for (const int v : loop.vertices) {
     loop.height += each * skin.rest(v, 1);
     for (SkinWeights::InnerIterator entry(skin.weights, v); entry; ++entry)
-      loop.share[places.region[static_cast<std::size_t>(entry.col())]] += each * entry.value();
+      loop.share[places.region[entry.col()]] += each * entry.value();
   }
   const auto nearest = std::min_element(places.spine.begin(), places.spine.end(), [&](const Vec3& a, const Vec3& b) {
     return std::abs(a.y() - loop.height) < std::abs(b.y() - loop.height);
@@ -133,11 +133,11 @@ std::vector<NamedLoop> named_loops(const SkinnedSurface& skin, const BodyModel& 
   std::vector<std::vector<Loop>> pieces(static_cast<std::size_t>(surface.component_count));
   for (std::vector<int>& loop : boundary_loops(surface)) {
     const int piece = surface.component[loop[0]];
-    pieces[static_cast<std::size_t>(piece)].push_back(looked_at(std::move(loop), skin, places));
+    pieces[piece].push_back(looked_at(std::move(loop), skin, places));
   }
   std::vector<char> hangs(pieces.size(), 0);  // from the shoulders
   for (int v = 0; v < surface.vertex_count; ++v)
-    if (skin.rest(v, 1) > places.shoulders) hangs[static_cast<std::size_t>(surface.component[v])] = 1;
+    if (skin.rest(v, 1) > places.shoulders) hangs[surface.component[v]] = 1;
   std::vector<std::string> names = taken;
   std::vector<NamedLoop> all;
   for (std::size_t p = 0; p < pieces.size(); ++p) {
@@ -159,7 +159,7 @@ std::vector<int> pins_of(const Garment& garment, const std::vector<std::string>&
     if (found == known.end())
       throw Error("names the unknown group `" + group + "`", "--pin",
                   "groups: " + joined(known) + suggestion(group, known));
-    const std::vector<int>& vertices = garment.groups[static_cast<std::size_t>(found - known.begin())].second;
+    const std::vector<int>& vertices = garment.groups[found - known.begin()].second;
     pins.insert(pins.end(), vertices.begin(), vertices.end());
   }
   std::ranges::sort(pins);

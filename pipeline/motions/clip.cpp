@@ -52,7 +52,7 @@ Points start_rotations(const Clip& clip, StartPose start) {
   Points rotations = Points::Zero(clip.poses.front().rotations.rows(), 3);
   const double down = start == StartPose::arms_down ? std::numbers::pi / 4 : 0;
   for (Eigen::Index j = 0; j < rotations.rows(); ++j) {
-    const std::string& name = clip.joints[static_cast<std::size_t>(j)];
+    const std::string& name = clip.joints[j];
     if (name == "left_shoulder") rotations(j, 2) = -down;
     if (name == "right_shoulder") rotations(j, 2) = down;
   }

@@ -193,7 +193,7 @@ BvhPose bvh_pose(const BvhFile& bvh, int frame) {
       if (kind < 3 && joint.parent < 0) moved[kind] += value;
     }
     if (joint.parent >= 0) {
-      const Mat3& parent = pose.rotations[static_cast<std::size_t>(joint.parent)];
+      const Mat3& parent = pose.rotations[joint.parent];
       moved = row(pose.positions, joint.parent) + parent * moved;
       turn = parent * turn;
     }

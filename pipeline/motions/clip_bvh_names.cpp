@@ -185,7 +185,7 @@ std::vector<int> matched_joints(const BvhFile& bvh, const std::map<std::string, 
   for (std::size_t j = 0; j < theirs.size(); ++j) {
     // MakeHuman inserts a joint `__UpLeg_L` between the hips and UpLeg_L.
     const auto [entry, fresh] = by_plain.emplace(plain[j], static_cast<int>(j));
-    if (!fresh && theirs[static_cast<std::size_t>(entry->second)].starts_with("_")) entry->second = static_cast<int>(j);
+    if (!fresh && theirs[entry->second].starts_with("_")) entry->second = static_cast<int>(j);
   }
   std::map<std::string, int> found;
   for (const Chain& chain : chains()) {
@@ -193,7 +193,7 @@ std::vector<int> matched_joints(const BvhFile& bvh, const std::map<std::string, 
     for (const auto& one : best(chain, by_plain, false)) both.push_back(one);
     for (const auto& [name, joint] : both) {
       found[name] = joint;
-      by_plain.erase(plain[static_cast<std::size_t>(joint)]);
+      by_plain.erase(plain[joint]);
     }
   }
   for (const auto& [name, joint] : options) {

@@ -19,13 +19,11 @@ struct Source {
   Mat3 upright;            // file's axes to Y up
   BvhPose rest;
 
-  Vec3 at(const BvhPose& pose, int smpl) const {
-    return upright * row(pose.positions, joint[static_cast<std::size_t>(smpl)]);
-  }
+  Vec3 at(const BvhPose& pose, int smpl) const { return upright * row(pose.positions, joint[smpl]); }
   Vec3 hips(const BvhPose& pose) const { return 0.5 * (at(pose, smpl::hip) + at(pose, smpl::hip + 1)); }
   // The rotation of a joint from rest, with Y up.
   Mat3 turned(const BvhPose& pose, int smpl) const {
-    const auto j = static_cast<std::size_t>(joint[static_cast<std::size_t>(smpl)]);
+    const auto j = static_cast<std::size_t>(joint[smpl]);
     return upright * pose.rotations[j] * rest.rotations[j].transpose() * upright.transpose();
   }
 };
@@ -34,8 +32,7 @@ struct Source {
 // does not stand upright.
 std::optional<Mat3> upright_axes(const Source& s) {
   const auto middle = [&](int left) -> Vec3 {
-    return 0.5 * (row(s.rest.positions, s.joint[static_cast<std::size_t>(left)]) +
-                  row(s.rest.positions, s.joint[static_cast<std::size_t>(left + 1)]));
+    return 0.5 * (row(s.rest.positions, s.joint[left]) + row(s.rest.positions, s.joint[left + 1]));
   };
   const Vec3 legs = middle(smpl::hip) - middle(smpl::ankle), trunk = middle(smpl::shoulder) - middle(smpl::hip);
   int axis = 0;
@@ -83,7 +80,7 @@ std::vector<Mat3> alignment(const Source& s, const Skeleton& k) {
                       angle(row(k.joints, smpl::hip), row(k.joints, smpl::hip + 1));
   const Mat3 heading = rotation_matrix(Vec3(0, turn, 0));  // from hip to hip, seen from above
   return turned_limbs(k.joints, heading, [&](int joint, int child) -> Vec3 {
-    const bool known = child < smpl::hand && s.joint[static_cast<std::size_t>(child)] >= 0;
+    const bool known = child < smpl::hand && s.joint[child] >= 0;
     return known ? Vec3(s.at(s.rest, child) - s.at(s.rest, joint)) : Vec3::Zero();
   });
 }
@@ -94,7 +91,7 @@ BodyPose pose_of(const Source& s, const BvhPose& pose, const std::vector<Mat3>& 
   std::vector<Mat3> world(24);
   for (std::size_t j = 0; j < 24; ++j) {
     const int parent = smpl_joint_parents()[j];
-    const Mat3 above = parent < 0 ? Mat3::Identity() : world[static_cast<std::size_t>(parent)];
+    const Mat3 above = parent < 0 ? Mat3::Identity() : world[parent];
     world[j] = s.joint[j] < 0 ? above : Mat3(s.turned(pose, static_cast<int>(j)) * align[j]);
     result.rotations.row(static_cast<Eigen::Index>(j)) = rotation_vector(above.transpose() * world[j]).transpose();
   }

@@ -107,19 +107,16 @@ double excess(const Skeleton& k, Figure& f, int side, const FootPose& foot_pose)
 // At least the given values everywhere, and smooth: the largest within three frames, averaged three times.
 std::vector<double> smooth_cover(std::vector<double> values) {
   const int n = static_cast<int>(values.size());
-  const auto at = [&](const std::vector<double>& v, int i) {
-    return v[static_cast<std::size_t>(std::clamp(i, 0, n - 1))];
-  };
+  const auto at = [&](const std::vector<double>& v, int i) { return v[std::clamp(i, 0, n - 1)]; };
   std::vector<double> next = values;
   for (int i = 0; i < n; ++i)
-    for (int d = -6; d <= 6; ++d)
-      next[static_cast<std::size_t>(i)] = std::max(next[static_cast<std::size_t>(i)], at(values, i + d));
+    for (int d = -6; d <= 6; ++d) next[i] = std::max(next[i], at(values, i + d));
   for (int round = 0; round < 3; ++round) {
     values = next;
     for (int i = 0; i < n; ++i) {
       double sum = 0;
       for (int d = -2; d <= 2; ++d) sum += at(values, i + d);
-      next[static_cast<std::size_t>(i)] = sum / 5;
+      next[i] = sum / 5;
     }
   }
   return next;
@@ -130,7 +127,7 @@ BodyPose solve(const Skeleton& k, Figure& f, const std::array<FootPose, 2>& feet
   local.fill(Mat3::Identity());
   const Mat3 body = pelvis_rotation(f);
   local[pelvis] = body;
-  for (const int j : {spine1, spine2, spine3}) local[static_cast<std::size_t>(j)] = bent(Vec3(f.spine()) / 3);
+  for (const int j : {spine1, spine2, spine3}) local[j] = bent(Vec3(f.spine()) / 3);
   local[neck] = local[head] = bent(Vec3(f.head()) / 2);
   for (std::size_t s = 0; s < 2; ++s) {
     const int side = static_cast<int>(s);

@@ -69,7 +69,7 @@ Figure figure_at(const Movement& m, double time) {
 std::array<FootPose, 2> feet_at(const Movement& m, double time) {
   std::array<FootPose, 2> feet = m.start;
   for (const Footstep& step : m.steps) {
-    FootPose& foot = feet[static_cast<std::size_t>(step.side)];
+    FootPose& foot = feet[step.side];
     const double length = step.to - step.from, s = std::clamp((time - step.from) / length, 0.0, 1.0);
     // First up, then along, then down: a foot near the ground does not slide.
     const double along = ease((s - 0.08) / 0.86);
@@ -84,7 +84,7 @@ std::array<FootPose, 2> feet_at(const Movement& m, double time) {
   }
   for (const Swing& swing : m.swings) {
     const double s = std::clamp((time - swing.from) / (swing.to - swing.from), 0.0, 1.0);
-    FootPose& foot = feet[static_cast<std::size_t>(swing.side)];
+    FootPose& foot = feet[swing.side];
     foot.at.y() += swing.height * 64 * std::pow(s * (1 - s), 3);
     foot.toe_up += 0.6 * std::min(1.0, swing.height) * 64 * std::pow(s * (1 - s), 3);
   }

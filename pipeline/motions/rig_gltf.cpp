@@ -29,7 +29,7 @@ std::vector<Matrix4d> global_transforms(const std::vector<GltfNode>& nodes) {
   std::vector<Matrix4d> all;
   for (const GltfNode& node : nodes) {
     const Matrix4d local = local_transform(node);
-    all.push_back(node.parent < 0 ? local : Matrix4d(all[static_cast<std::size_t>(node.parent)] * local));
+    all.push_back(node.parent < 0 ? local : Matrix4d(all[node.parent] * local));
   }
   return all;
 }
@@ -51,13 +51,11 @@ Mat3 nearest_rotation(const Mat3& m) {
 // The parent of each joint of a skin among these joints; other nodes between are skipped.
 std::vector<int> parents_among(const GltfScene& scene) {
   std::vector<int> joint_of(scene.nodes.size(), -1), parents;
-  for (std::size_t j = 0; j < scene.joints.size(); ++j)
-    joint_of[static_cast<std::size_t>(scene.joints[j])] = static_cast<int>(j);
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) joint_of[scene.joints[j]] = static_cast<int>(j);
   for (const int joint : scene.joints) {
-    int node = scene.nodes[static_cast<std::size_t>(joint)].parent;
-    while (node >= 0 && joint_of[static_cast<std::size_t>(node)] < 0)
-      node = scene.nodes[static_cast<std::size_t>(node)].parent;
-    parents.push_back(node < 0 ? -1 : joint_of[static_cast<std::size_t>(node)]);
+    int node = scene.nodes[joint].parent;
+    while (node >= 0 && joint_of[node] < 0) node = scene.nodes[node].parent;
+    parents.push_back(node < 0 ? -1 : joint_of[node]);
   }
   return parents;
 }
@@ -92,9 +90,9 @@ std::vector<std::string> joint_names(const std::vector<std::string>& names, cons
     const std::vector<int> found = matched_joints(rig, {});
     const std::vector<std::string> smpl_names = smpl_joint_names(smpl::joints);
     for (std::size_t k = 0; k < found.size(); ++k)
-      if (found[k] >= 0 && !is_smpl[static_cast<std::size_t>(found[k])]) {
-        all[static_cast<std::size_t>(found[k])] = smpl_names[k];
-        is_smpl[static_cast<std::size_t>(found[k])] = 1;
+      if (found[k] >= 0 && !is_smpl[found[k]]) {
+        all[found[k]] = smpl_names[k];
+        is_smpl[found[k]] = 1;
       }
   } catch (const Error&) {  // not a human rig: keeps its own names
   }
@@ -155,7 +153,7 @@ Eigen::VectorXd value_at(const GltfTrack& track, double time) {
 std::vector<GltfNode> nodes_at(const GltfRig& rig, const GltfAnimation& animation, double time) {
   std::vector<GltfNode> nodes = rig.scene.nodes;
   for (const GltfTrack& track : animation.tracks) {
-    GltfNode& node = nodes[static_cast<std::size_t>(track.node)];
+    GltfNode& node = nodes[track.node];
     const Eigen::VectorXd value = value_at(track, time);
     if (track.path == GltfPath::rotation)
       node.rotation = Eigen::Quaterniond(Eigen::Vector4d(value)).normalized();
@@ -173,7 +171,7 @@ const GltfAnimation& animation_named(const GltfRig& rig, const std::string& name
   for (const GltfAnimation& animation : all) names.push_back(animation.name);
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) throw Error("has no animation `" + name + "`", rig.file, "it has " + joined(names));
-  return all[static_cast<std::size_t>(found - names.begin())];
+  return all[found - names.begin()];
 }
 
 // The body's pose at a time: the joints' motion from the zero pose.
@@ -184,9 +182,9 @@ BodyPose animated_pose(const GltfRig& rig, const Points& zero, const GltfAnimati
   BodyPose pose{Points(zero.rows(), 3), Vec3::Zero()};
   std::vector<Matrix4d> moved;
   for (int j = 0; j < zero.rows(); ++j) {
-    const auto joint = static_cast<std::size_t>(rig.joints[static_cast<std::size_t>(j)]);
-    Matrix4d m = global[static_cast<std::size_t>(rig.scene.joints[joint])] * rig.scene.inverse_bind[joint] * to_mesh;
-    const std::string& name = rig.body.joints[static_cast<std::size_t>(j)];
+    const auto joint = static_cast<std::size_t>(rig.joints[j]);
+    Matrix4d m = global[rig.scene.joints[joint]] * rig.scene.inverse_bind[joint] * to_mesh;
+    const std::string& name = rig.body.joints[j];
     const auto fail = [&](const std::string& what) {
       throw Error(what, fmt::format("{}: animation `{}`, joint `{}` at {:.3f} s", rig.file, animation.name, name, time),
                   "bones keep their lengths here: clear scale and stretch of the bones before the export");
@@ -194,12 +192,12 @@ BodyPose animated_pose(const GltfRig& rig, const Points& zero, const GltfAnimati
     if (std::abs(size_of(m) - 1) > 0.01) fail("is scaled");
     m.topLeftCorner<3, 3>() = nearest_rotation(m.topLeftCorner<3, 3>());
     const Eigen::Vector4d at = row(zero, j).homogeneous();
-    const int parent = rig.body.parents[static_cast<std::size_t>(j)];
+    const int parent = rig.body.parents[j];
     Mat3 turn = m.topLeftCorner<3, 3>();
     if (parent < 0) {
       pose.translation = (m * at - at).head<3>();
     } else {
-      const Matrix4d& above = moved[static_cast<std::size_t>(parent)];
+      const Matrix4d& above = moved[parent];
       if (const double off = (m * at - above * at).norm(); off > most)
         fail(fmt::format("moves by {:.0f} mm against its parent", 1000 * off));
       turn = above.topLeftCorner<3, 3>().transpose() * turn;
@@ -218,7 +216,7 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
   const std::vector<int> parents = parents_among(scene);
   rig.joints = kept_joints(scene, parents, rig.file);
   const auto root = static_cast<std::size_t>(rig.joints[0]);
-  rig.placed = global_transforms(scene.nodes)[static_cast<std::size_t>(scene.joints[root])] * scene.inverse_bind[root];
+  rig.placed = global_transforms(scene.nodes)[scene.joints[root]] * scene.inverse_bind[root];
   if (size_of(rig.placed) == 0)
     throw Error("is scaled unevenly or mirrored", rig.file + ": skin", "apply the armature's scale before the export");
 
@@ -234,8 +232,8 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
   for (std::size_t j = 0; j < rig.joints.size(); ++j) {
     const auto joint = static_cast<std::size_t>(rig.joints[j]);
     place[joint] = static_cast<int>(j);
-    body.parents.push_back(j == 0 ? -1 : place[static_cast<std::size_t>(parents[joint])]);
-    names.push_back(scene.nodes[static_cast<std::size_t>(scene.joints[joint])].name);
+    body.parents.push_back(j == 0 ? -1 : place[parents[joint]]);
+    names.push_back(scene.nodes[scene.joints[joint]].name);
     if (!(std::abs(scene.inverse_bind[joint].determinant()) > 1e-12))
       throw Error("cannot be inverted", rig.file + ": skin, inverseBindMatrices of `" + names.back() + "`",
                   "export it anew");
@@ -246,7 +244,7 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
   std::vector<Eigen::Triplet<double>> weights;
   for (Eigen::Index v = 0; v < scene.weights.rows(); ++v)
     for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator w(scene.weights, v); w; ++w)
-      weights.emplace_back(v, place[static_cast<std::size_t>(w.col())], w.value());
+      weights.emplace_back(v, place[w.col()], w.value());
   body.skin.weights.resize(scene.weights.rows(), joints.rows());
   body.skin.weights.setFromTriplets(weights.begin(), weights.end());
   body.skin.shape_directions.resize(3 * body.skin.rest.rows(), 0);

@@ -181,7 +181,7 @@ Sequence read_recorded(const Config& section, const std::filesystem::path& folde
       all.pop_back();  // it has the positions of the frame before
       continue;
     }
-    const PointsF& x = part.obstacle >= 0 ? frame.obstacles[static_cast<std::size_t>(part.obstacle)] : frame.x;
+    const PointsF& x = part.obstacle >= 0 ? frame.obstacles[part.obstacle] : frame.x;
     sequence.frames.push_back(unit * x.middleRows(part.first_vertex, part.vertex_count).cast<double>());
   }
   if (sequence.frames.empty()) throw Error("has no frames", file.string(), "used by " + section.where);

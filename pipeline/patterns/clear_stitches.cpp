@@ -50,7 +50,7 @@ class Placing {
   }
 
  private:
-  int panel(int vertex) const { return mesh_.panel[static_cast<std::size_t>(vertex)]; }
+  int panel(int vertex) const { return mesh_.panel[vertex]; }
 
   // For each stitch the deepest point of its straight line in the body, or the nearest to it.
   std::vector<SignedDistance> depths(const Points& x) const {
@@ -59,7 +59,7 @@ class Placing {
     for (Eigen::Index s = 0; s < count; ++s)
       for (int k = 0; k < points_a_stitch; ++k) {
         const double t = 1.0 * k / (points_a_stitch - 1);
-        const auto& [a, b] = mesh_.sewn[static_cast<std::size_t>(s)];
+        const auto& [a, b] = mesh_.sewn[s];
         at.row(s * points_a_stitch + k) = (1 - t) * x.row(a) + t * x.row(b);
       }
     const std::vector<SignedDistance> all = field_.ask(at);
@@ -86,7 +86,7 @@ class Placing {
   // Positions with the panels of that seam moved out of the body, in the direction in which its deepest stitch leaves
   // soonest.
   Points freed(Points x, std::size_t first, std::size_t end) const {
-    const auto group = [&](int vertex) { return numbers_[static_cast<std::size_t>(panel(vertex))]; };
+    const auto group = [&](int vertex) { return numbers_[panel(vertex)]; };
     const int one = group(mesh_.sewn[first][0]), other = group(mesh_.sewn[first][1]);
     for (int move = 0; move < most_moves; ++move) {
       const std::vector<SignedDistance> now = depths(x);

@@ -45,9 +45,8 @@ FlipMesh::FlipMesh(const std::vector<Vec2>& outline, const std::vector<std::arra
 }
 
 int FlipMesh::sign(int t) const {
-  const auto& c = triangles[static_cast<std::size_t>(t)].corner;
-  return orient2d(points[static_cast<std::size_t>(c[0])], points[static_cast<std::size_t>(c[1])],
-                  points[static_cast<std::size_t>(c[2])]);
+  const auto& c = triangles[t].corner;
+  return orient2d(points[c[0]], points[c[1]], points[c[2]]);
 }
 
 bool FlipMesh::is_sound() const {
@@ -57,58 +56,51 @@ bool FlipMesh::is_sound() const {
 }
 
 int FlipMesh::edge_to(int t, int other) const {
-  const auto& beyond = triangles[static_cast<std::size_t>(t)].beyond;
+  const auto& beyond = triangles[t].beyond;
   return static_cast<int>(std::ranges::find(beyond, other) - beyond.begin());
 }
 
 void FlipMesh::rejoin(int t, int k) {
-  const FlipTriangle& triangle = triangles[static_cast<std::size_t>(t)];
-  const int other = triangle.beyond[static_cast<std::size_t>(k)];
+  const FlipTriangle& triangle = triangles[t];
+  const int other = triangle.beyond[k];
   if (other < 0) return;
-  FlipTriangle& far = triangles[static_cast<std::size_t>(other)];
-  const int end = triangle.corner[static_cast<std::size_t>((k + 1) % 3)];
+  FlipTriangle& far = triangles[other];
+  const int end = triangle.corner[(k + 1) % 3];
   for (std::size_t m = 0; m < 3; ++m)
-    if (far.corner[m] == end && far.corner[(m + 1) % 3] == triangle.corner[static_cast<std::size_t>(k)])
-      far.beyond[m] = t;
+    if (far.corner[m] == end && far.corner[(m + 1) % 3] == triangle.corner[k]) far.beyond[m] = t;
 }
 
 bool FlipMesh::is_chord(int t, int k) const {
-  const FlipTriangle& triangle = triangles[static_cast<std::size_t>(t)];
-  return triangle.beyond[static_cast<std::size_t>(k)] >= 0 && triangle.corner[static_cast<std::size_t>(k)] < fixed &&
-         triangle.corner[static_cast<std::size_t>((k + 1) % 3)] < fixed;
+  const FlipTriangle& triangle = triangles[t];
+  return triangle.beyond[k] >= 0 && triangle.corner[k] < fixed && triangle.corner[(k + 1) % 3] < fixed;
 }
 
 double FlipMesh::angle_if_flipped(int t, int k) const {
-  const FlipTriangle& near = triangles[static_cast<std::size_t>(t)];
-  const int u = near.beyond[static_cast<std::size_t>(k)];
+  const FlipTriangle& near = triangles[t];
+  const int u = near.beyond[k];
   if (u < 0) return 0;
   const int m = edge_to(u, t);
-  const int c = near.corner[static_cast<std::size_t>((k + 2) % 3)],
-            d = triangles[static_cast<std::size_t>(u)].corner[static_cast<std::size_t>((m + 2) % 3)];
+  const int c = near.corner[(k + 2) % 3], d = triangles[u].corner[(m + 2) % 3];
   if (!may_make_chords && c < fixed && d < fixed) return 0;
-  const Vec2 &pa = points[static_cast<std::size_t>(near.corner[static_cast<std::size_t>(k)])],
-             &pb = points[static_cast<std::size_t>(near.corner[static_cast<std::size_t>((k + 1) % 3)])],
-             &pc = points[static_cast<std::size_t>(c)], &pd = points[static_cast<std::size_t>(d)];
+  const Vec2 &pa = points[near.corner[k]], &pb = points[near.corner[(k + 1) % 3]], &pc = points[c], &pd = points[d];
   if (orient2d(pa, pd, pc) <= 0 || orient2d(pd, pb, pc) <= 0) return 0;
   return std::min(smallest_angle(pa, pd, pc), smallest_angle(pd, pb, pc));
 }
 
 bool FlipMesh::wants_flip(int t, int k) const {
-  const FlipTriangle& near = triangles[static_cast<std::size_t>(t)];
-  const int u = near.beyond[static_cast<std::size_t>(k)];
+  const FlipTriangle& near = triangles[t];
+  const int u = near.beyond[k];
   if (u < 0) return false;
-  const int d = triangles[static_cast<std::size_t>(u)].corner[static_cast<std::size_t>((edge_to(u, t) + 2) % 3)];
+  const int d = triangles[u].corner[(edge_to(u, t) + 2) % 3];
   const auto& c = near.corner;
-  return within_circle(points[static_cast<std::size_t>(c[0])], points[static_cast<std::size_t>(c[1])],
-                       points[static_cast<std::size_t>(c[2])], points[static_cast<std::size_t>(d)]) &&
-         angle_if_flipped(t, k) > 0;
+  return within_circle(points[c[0]], points[c[1]], points[c[2]], points[d]) && angle_if_flipped(t, k) > 0;
 }
 
 // Triangles (a b c) and (b a d) become (a d c) and (d b c).
 void FlipMesh::flip(int t, int k) {
-  FlipTriangle& near = triangles[static_cast<std::size_t>(t)];
-  const int u = near.beyond[static_cast<std::size_t>(k)], m = edge_to(u, t);
-  FlipTriangle& far = triangles[static_cast<std::size_t>(u)];
+  FlipTriangle& near = triangles[t];
+  const int u = near.beyond[k], m = edge_to(u, t);
+  FlipTriangle& far = triangles[u];
   const auto at = [](int i) { return static_cast<std::size_t>(i % 3); };
   const int a = near.corner[at(k)], b = near.corner[at(k + 1)], c = near.corner[at(k + 2)], d = far.corner[at(m + 2)];
   const int bc = near.beyond[at(k + 1)], ca = near.beyond[at(k + 2)], ad = far.beyond[at(m + 1)],
@@ -122,17 +114,17 @@ void FlipMesh::flip(int t, int k) {
 
 void FlipMesh::cut(int t, int k) {
   const auto at = [](int i) { return static_cast<std::size_t>(i % 3); };
-  const FlipTriangle near = triangles[static_cast<std::size_t>(t)];
+  const FlipTriangle near = triangles[t];
   const int u = near.beyond[at(k)], m = edge_to(u, t);
-  const FlipTriangle far = triangles[static_cast<std::size_t>(u)];
+  const FlipTriangle far = triangles[u];
   const int a = near.corner[at(k)], b = near.corner[at(k + 1)], c = near.corner[at(k + 2)], d = far.corner[at(m + 2)];
   const int p = static_cast<int>(points.size()), v = static_cast<int>(triangles.size()), w = v + 1;
-  points.push_back((points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)]) / 2);
+  points.push_back((points[a] + points[b]) / 2);
   triangles.resize(triangles.size() + 2);
-  triangles[static_cast<std::size_t>(t)] = {{a, p, c}, {u, v, near.beyond[at(k + 2)]}};
-  triangles[static_cast<std::size_t>(v)] = {{p, b, c}, {w, near.beyond[at(k + 1)], t}};
-  triangles[static_cast<std::size_t>(u)] = {{p, a, d}, {t, far.beyond[at(m + 1)], w}};
-  triangles[static_cast<std::size_t>(w)] = {{b, p, d}, {v, u, far.beyond[at(m + 2)]}};
+  triangles[t] = {{a, p, c}, {u, v, near.beyond[at(k + 2)]}};
+  triangles[v] = {{p, b, c}, {w, near.beyond[at(k + 1)], t}};
+  triangles[u] = {{p, a, d}, {t, far.beyond[at(m + 1)], w}};
+  triangles[w] = {{b, p, d}, {v, u, far.beyond[at(m + 2)]}};
   rejoin(v, 1);
   rejoin(w, 2);
 }
@@ -154,22 +146,18 @@ int FlipMesh::find(const Vec2& p) const {
   int t = std::min(last_, static_cast<int>(triangles.size()) - 1);
   // The walk may hit the outline of a polygon that is not convex; then every triangle is tested.
   for (std::size_t step = 0; step < triangles.size(); ++step) {
-    const FlipTriangle& triangle = triangles[static_cast<std::size_t>(t)];
+    const FlipTriangle& triangle = triangles[t];
     int out = -1;
     for (std::size_t k = 0; k < 3 && out < 0; ++k)
-      if (orient2d(points[static_cast<std::size_t>(triangle.corner[k])],
-                   points[static_cast<std::size_t>(triangle.corner[(k + 1) % 3])], p) < 0)
-        out = static_cast<int>(k);
+      if (orient2d(points[triangle.corner[k]], points[triangle.corner[(k + 1) % 3]], p) < 0) out = static_cast<int>(k);
     if (out < 0) return last_ = t;
-    t = triangle.beyond[static_cast<std::size_t>(out)];
+    t = triangle.beyond[out];
     if (t < 0) break;
   }
   for (t = 0; t < static_cast<int>(triangles.size()); ++t) {
-    const auto& c = triangles[static_cast<std::size_t>(t)].corner;
+    const auto& c = triangles[t].corner;
     bool inside = true;
-    for (std::size_t k = 0; k < 3 && inside; ++k)
-      inside =
-          orient2d(points[static_cast<std::size_t>(c[k])], points[static_cast<std::size_t>(c[(k + 1) % 3])], p) >= 0;
+    for (std::size_t k = 0; k < 3 && inside; ++k) inside = orient2d(points[c[k]], points[c[(k + 1) % 3]], p) >= 0;
     if (inside) return last_ = t;
   }
   return -1;
@@ -178,17 +166,15 @@ int FlipMesh::find(const Vec2& p) const {
 void FlipMesh::insert(const Vec2& p) {
   const int t = find(p);
   if (t < 0) return;
-  const FlipTriangle old = triangles[static_cast<std::size_t>(t)];
+  const FlipTriangle old = triangles[t];
   for (std::size_t k = 0; k < 3; ++k)
-    if (orient2d(points[static_cast<std::size_t>(old.corner[k])],
-                 points[static_cast<std::size_t>(old.corner[(k + 1) % 3])], p) == 0)
-      return;
+    if (orient2d(points[old.corner[k]], points[old.corner[(k + 1) % 3]], p) == 0) return;
   const int v = static_cast<int>(points.size()), second = static_cast<int>(triangles.size()), third = second + 1;
   points.push_back(p);
   triangles.resize(triangles.size() + 2);
-  triangles[static_cast<std::size_t>(t)] = {{old.corner[0], old.corner[1], v}, {old.beyond[0], second, third}};
-  triangles[static_cast<std::size_t>(second)] = {{old.corner[1], old.corner[2], v}, {old.beyond[1], third, t}};
-  triangles[static_cast<std::size_t>(third)] = {{old.corner[2], old.corner[0], v}, {old.beyond[2], t, second}};
+  triangles[t] = {{old.corner[0], old.corner[1], v}, {old.beyond[0], second, third}};
+  triangles[second] = {{old.corner[1], old.corner[2], v}, {old.beyond[1], third, t}};
+  triangles[third] = {{old.corner[2], old.corner[0], v}, {old.beyond[2], t, second}};
   for (const int made : {t, second, third}) rejoin(made, 0);
   settle({t, second, third});
 }
@@ -198,11 +184,11 @@ void FlipMesh::settle(std::vector<int> fan) {
   const int v = static_cast<int>(points.size()) - 1;
   for (std::size_t i = 0; i < fan.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const FlipTriangle triangle = triangles[static_cast<std::size_t>(fan[i])];
-      if (triangle.corner[static_cast<std::size_t>((k + 2) % 3)] != v || !wants_flip(fan[i], k)) continue;
+      const FlipTriangle triangle = triangles[fan[i]];
+      if (triangle.corner[(k + 2) % 3] != v || !wants_flip(fan[i], k)) continue;
       flip(fan[i], k);
       fan.push_back(fan[i]);
-      fan.push_back(triangle.beyond[static_cast<std::size_t>(k)]);
+      fan.push_back(triangle.beyond[k]);
       break;
     }
 }
@@ -210,7 +196,7 @@ void FlipMesh::settle(std::vector<int> fan) {
 std::vector<std::vector<int>> FlipMesh::triangles_round_vertices() const {
   std::vector<std::vector<int>> around(points.size());
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (const int v : triangles[t].corner) around[static_cast<std::size_t>(v)].push_back(static_cast<int>(t));
+    for (const int v : triangles[t].corner) around[v].push_back(static_cast<int>(t));
   return around;
 }
 

@@ -10,9 +10,7 @@ namespace {
 
 constexpr int fine_pieces = 512;  // pieces of a curve, for measuring lengths
 
-const Vec2& corner(const Panel& panel, const PanelEdge& edge, std::size_t end) {
-  return panel.corners[static_cast<std::size_t>(edge.ends[end])];
-}
+const Vec2& corner(const Panel& panel, const PanelEdge& edge, std::size_t end) { return panel.corners[edge.ends[end]]; }
 
 // t from 0 to 1, by equal angles.
 Vec2 arc_point(const Vec2& a, const Vec2& b, const PanelEdge& edge, double t) {
@@ -61,13 +59,13 @@ FineCurve fine_curve(const Panel& panel, const PanelEdge& edge) {
 std::string edge_name(const Panel& panel, int edge) { return fmt::format("panel `{}`, edge {}", panel.name, edge); }
 
 double edge_length(const Panel& panel, int e) {
-  const PanelEdge& edge = panel.edges[static_cast<std::size_t>(e)];
+  const PanelEdge& edge = panel.edges[e];
   if (edge.form == EdgeForm::straight) return (corner(panel, edge, 1) - corner(panel, edge, 0)).norm();
   return fine_curve(panel, edge).length.back();
 }
 
 std::vector<Vec2> edge_points(const Panel& panel, int e, int n) {
-  const PanelEdge& edge = panel.edges[static_cast<std::size_t>(e)];
+  const PanelEdge& edge = panel.edges[e];
   const FineCurve curve = fine_curve(panel, edge);
   std::vector<Vec2> points{corner(panel, edge, 0)};
   for (int i = 1; i < n; ++i) {

@@ -24,19 +24,17 @@ void check_places(const Panel& panel, const std::string& file) {
     throw Error(fmt::format("is more than {} m from the body", most_way), file + ": panel `" + panel.name + "`", cure);
   const auto is_far = [](const Vec2& p) { return !(p.cwiseAbs().maxCoeff() <= most_way); };
   for (int e = 0; e < static_cast<int>(panel.edges.size()); ++e) {
-    const PanelEdge& edge = panel.edges[static_cast<std::size_t>(e)];
+    const PanelEdge& edge = panel.edges[e];
     bool far = std::ranges::any_of(edge.controls, is_far) || !(std::abs(edge.radius) <= most_radius);
-    for (const int v : edge.ends) far = far || is_far(panel.corners[static_cast<std::size_t>(v)]);
+    for (const int v : edge.ends) far = far || is_far(panel.corners[v]);
     if (far) throw Error(fmt::format("reaches farther than {} m", most_way), file + ": " + edge_name(panel, e), cure);
   }
 }
 
 void check_edge(const Panel& panel, int e, const std::string& file) {
-  const PanelEdge& edge = panel.edges[static_cast<std::size_t>(e)];
+  const PanelEdge& edge = panel.edges[e];
   const std::string where = file + ": " + edge_name(panel, e);
-  const double chord =
-      (panel.corners[static_cast<std::size_t>(edge.ends[1])] - panel.corners[static_cast<std::size_t>(edge.ends[0])])
-          .norm();
+  const double chord = (panel.corners[edge.ends[1]] - panel.corners[edge.ends[0]]).norm();
   if (chord < least_length)
     throw Error("has no length", where, "leave the edge out, or give its ends different places");
   if (edge.form == EdgeForm::circle && 2 * edge.radius < chord * (1 - 1e-6))
@@ -48,14 +46,14 @@ void check_edge(const Panel& panel, int e, const std::string& file) {
 std::vector<int> closed_loop(const Panel& panel, const std::string& file) {
   std::map<int, int> from;
   for (int e = 0; e < static_cast<int>(panel.edges.size()); ++e)
-    if (!from.emplace(panel.edges[static_cast<std::size_t>(e)].ends[0], e).second)
+    if (!from.emplace(panel.edges[e].ends[0], e).second)
       throw Error("starts at a vertex at which another edge starts", file + ": " + edge_name(panel, e),
                   "let the edges of a panel follow each other once round");
   std::vector<int> loop;
   int e = 0;
   do {
     loop.push_back(e);
-    const auto next = from.find(panel.edges[static_cast<std::size_t>(e)].ends[1]);
+    const auto next = from.find(panel.edges[e].ends[1]);
     const std::string cure = "let the edges of a panel follow each other once round";
     if (next == from.end())
       throw Error("ends where no edge starts: the loop is open", file + ": " + edge_name(panel, e), cure);
@@ -83,7 +81,7 @@ void check_crossings(const Panel& panel, const std::string& file) {
   std::vector<Vec2> outline;
   std::vector<int> edge;
   for (const int e : panel.loop) {
-    const int pieces = panel.edges[static_cast<std::size_t>(e)].form == EdgeForm::straight ? 1 : checked_pieces;
+    const int pieces = panel.edges[e].form == EdgeForm::straight ? 1 : checked_pieces;
     const std::vector<Vec2> points = edge_points(panel, e, pieces);
     outline.insert(outline.end(), points.begin(), points.end() - 1);
     edge.insert(edge.end(), static_cast<std::size_t>(pieces), e);
@@ -104,8 +102,7 @@ void check_seams(const Pattern& pattern, const std::string& file) {
     for (const PanelSide& side : pattern.seams[s].sides)
       if (const auto [other, is_new] = sewn.emplace(std::pair(side.panel, side.edge), s); !is_new)
         throw Error(fmt::format("is sewn by stitch {} and by stitch {}", other->second, s),
-                    file + ": " + edge_name(pattern.panels[static_cast<std::size_t>(side.panel)], side.edge),
-                    "sew an edge once");
+                    file + ": " + edge_name(pattern.panels[side.panel], side.edge), "sew an edge once");
 }
 
 }  // namespace

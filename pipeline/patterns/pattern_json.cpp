@@ -92,8 +92,7 @@ struct PatternReader {
 
   // A list of two numbers is the control point of a quadratic curve: the form of older files.
   void read_curvature(const Json& curvature, const Panel& panel, PanelEdge& edge, const std::string& where) const {
-    const Vec2 from = panel.corners[static_cast<std::size_t>(edge.ends[0])],
-               to = panel.corners[static_cast<std::size_t>(edge.ends[1])];
+    const Vec2 from = panel.corners[edge.ends[0]], to = panel.corners[edge.ends[1]];
     if (curvature.is_array()) {
       edge.form = EdgeForm::quadratic;
       edge.controls = {control(curvature, from, to, where)};
@@ -141,9 +140,7 @@ struct PatternReader {
     panel.corners.assign(corners.size(), Vec2::Zero());
     for (std::size_t e = 0; e < edges.size(); ++e)
       for (const int v : ends[e])
-        panel.corners[static_cast<std::size_t>(v)] =
-            unit * place(corners[static_cast<std::size_t>(v)], fmt::format("{}, edge {}", where, e),
-                         fmt::format("vertex {}", v));
+        panel.corners[v] = unit * place(corners[v], fmt::format("{}, edge {}", where, e), fmt::format("vertex {}", v));
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const std::string at = fmt::format("{}, edge {}", where, e);
       PanelEdge edge;

@@ -22,9 +22,7 @@ EdgeCounts edge_counts(const Pattern& pattern, double edge) {
       counts.back().push_back(std::max(1, static_cast<int>(std::lround(edge_length(panel, e) / edge))));
   }
   for (const PatternSeam& seam : pattern.seams) {
-    const auto count = [&](std::size_t k) -> int& {
-      return counts[static_cast<std::size_t>(seam.sides[k].panel)][static_cast<std::size_t>(seam.sides[k].edge)];
-    };
+    const auto count = [&](std::size_t k) -> int& { return counts[seam.sides[k].panel][seam.sides[k].edge]; };
     count(0) = count(1) = std::max(count(0), count(1));
   }
   return counts;
@@ -40,12 +38,12 @@ CutPanel cut_panel(const Panel& panel, const std::vector<int>& counts, double ed
   cut.edge_vertices.resize(panel.edges.size());
   std::vector<Vec2> outline;
   for (const int e : panel.loop) {
-    const std::vector<Vec2> points = edge_points(panel, e, counts[static_cast<std::size_t>(e)]);
+    const std::vector<Vec2> points = edge_points(panel, e, counts[e]);
     for (std::size_t i = 0; i < points.size(); ++i)
-      cut.edge_vertices[static_cast<std::size_t>(e)].push_back(static_cast<int>(outline.size() + i));
+      cut.edge_vertices[e].push_back(static_cast<int>(outline.size() + i));
     outline.insert(outline.end(), points.begin(), points.end() - 1);
   }
-  cut.edge_vertices[static_cast<std::size_t>(panel.loop.back())].back() = 0;
+  cut.edge_vertices[panel.loop.back()].back() = 0;
   const bool clockwise = twice_area(outline) < 0;  // seen from the front; then the right side is the back
   if (clockwise)
     for (Vec2& p : outline) p.x() = -p.x();
@@ -62,7 +60,7 @@ CutPanel cut_panel(const Panel& panel, const std::vector<int>& counts, double ed
 // The rest shape of a triangle, seen from the panel's right side.
 RestTriangle rest_of(const std::vector<Vec2>& points, const Triangles& triangles, Eigen::Index t) {
   RestTriangle rest;
-  for (int k = 0; k < 3; ++k) rest.col(k) = points[static_cast<std::size_t>(triangles(t, k))];
+  for (int k = 0; k < 3; ++k) rest.col(k) = points[triangles(t, k)];
   if (area(rest) < 0) rest.row(0) *= -1;
   return rest;
 }
@@ -72,7 +70,7 @@ void append(const Panel& panel, int number, const CutPanel& cut, PatternMesh& al
                      n = static_cast<Eigen::Index>(cut.mesh.points.size()), m = cut.mesh.triangles.rows();
   all.placed.conservativeResize(first + n, 3);
   for (Eigen::Index v = 0; v < n; ++v) {
-    const Vec2& p = cut.mesh.points[static_cast<std::size_t>(v)];
+    const Vec2& p = cut.mesh.points[v];
     all.placed.row(first + v) = (panel.rotation * Vec3(p.x(), p.y(), 0) + panel.translation).transpose();
   }
   all.triangles.conservativeResize(first_triangle + m, 3);
@@ -114,7 +112,7 @@ PatternMesh pattern_mesh(const Pattern& pattern, double edge) {
   for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
     const auto side = [&](std::size_t k) {
       const PanelSide& at = pattern.seams[s].sides[k];
-      return edge_vertices[static_cast<std::size_t>(at.panel)][static_cast<std::size_t>(at.edge)];
+      return edge_vertices[at.panel][at.edge];
     };
     const std::vector<int> from = side(0);
     std::vector<int> to = side(1);

@@ -59,14 +59,13 @@ void relax(FlipMesh& mesh) {
     const std::vector<std::vector<int>> around = mesh.triangles_round_vertices();
     for (int v = mesh.fixed; v < static_cast<int>(mesh.points.size()); ++v) {
       Vec2 sum = Vec2::Zero();
-      for (const int t : around[static_cast<std::size_t>(v)])
-        for (const int w : mesh.triangles[static_cast<std::size_t>(t)].corner)
-          if (w != v) sum += mesh.points[static_cast<std::size_t>(w)];
-      const Vec2 before = mesh.points[static_cast<std::size_t>(v)];
-      mesh.points[static_cast<std::size_t>(v)] =
-          sum / (2.0 * static_cast<double>(around[static_cast<std::size_t>(v)].size()));
-      for (const int t : around[static_cast<std::size_t>(v)])
-        if (mesh.sign(t) <= 0) mesh.points[static_cast<std::size_t>(v)] = before;
+      for (const int t : around[v])
+        for (const int w : mesh.triangles[t].corner)
+          if (w != v) sum += mesh.points[w];
+      const Vec2 before = mesh.points[v];
+      mesh.points[v] = sum / (2.0 * static_cast<double>(around[v].size()));
+      for (const int t : around[v])
+        if (mesh.sign(t) <= 0) mesh.points[v] = before;
     }
     mesh.make_delaunay();
   }
@@ -104,8 +103,7 @@ PlanarMesh planar_mesh(const std::vector<Vec2>& outline, double edge) {
   result.points = mesh.points;
   result.triangles.resize(static_cast<Eigen::Index>(mesh.triangles.size()), 3);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      result.triangles(static_cast<Eigen::Index>(t), k) = mesh.triangles[t].corner[static_cast<std::size_t>(k)];
+    for (int k = 0; k < 3; ++k) result.triangles(static_cast<Eigen::Index>(t), k) = mesh.triangles[t].corner[k];
   return result;
 }
 

@@ -39,8 +39,8 @@ Points means(const Points& x, const Joining& to) {
   Points sum = Points::Zero(to.count, 3);
   Eigen::VectorXd members = Eigen::VectorXd::Zero(to.count);
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
-    sum.row(to.number[static_cast<std::size_t>(v)]) += x.row(v);
-    members[to.number[static_cast<std::size_t>(v)]] += 1;
+    sum.row(to.number[v]) += x.row(v);
+    members[to.number[v]] += 1;
   }
   for (int v = 0; v < to.count; ++v) sum.row(v) /= members[v];
   return sum;
@@ -49,7 +49,7 @@ Points means(const Points& x, const Joining& to) {
 Points spread(const Points& x, const Joining& from) { return x(from.number, Eigen::all); }
 
 Triangles renumbered(Triangles triangles, const Joining& to) {
-  for (int& v : triangles.reshaped()) v = to.number[static_cast<std::size_t>(v)];
+  for (int& v : triangles.reshaped()) v = to.number[v];
   return triangles;
 }
 
@@ -126,8 +126,7 @@ struct Sewing {
     State state = first_state(scene, means(mesh.placed, joining), {body});
     std::vector<double> first;
     for (const std::array<int, 2>& stitch : mesh.sewn) {
-      const int a = joining.number[static_cast<std::size_t>(stitch[0])],
-                b = joining.number[static_cast<std::size_t>(stitch[1])];
+      const int a = joining.number[stitch[0]], b = joining.number[stitch[1]];
       if (a == b) continue;
       first.push_back((row(state.x, a) - row(state.x, b)).norm());
       scene.springs.push_back({a, b, first.back(), first_stiffness});
@@ -202,7 +201,7 @@ SewnPattern sew_pattern(const PatternMesh& mesh, const Points& body, const Trian
   sewing.drape(sewing.close());
   for (const auto& [name, vertices] : mesh.groups) {
     std::vector<int> members;
-    for (const int v : vertices) members.push_back(sewing.result.vertex[static_cast<std::size_t>(v)]);
+    for (const int v : vertices) members.push_back(sewing.result.vertex[v]);
     std::ranges::sort(members);
     members.erase(std::unique(members.begin(), members.end()), members.end());
     sewing.result.groups.emplace_back(name, std::move(members));

@@ -51,7 +51,7 @@ void cut(Cutter& cutter, const std::array<int, 3>& corners) {
   std::vector<int> kept;  // the part inside, a triangle or a quadrangle
   for (std::size_t k = 0; k < 3; ++k) {
     const int a = corners[k], b = corners[(k + 1) % 3];
-    const double sa = cutter.side[static_cast<std::size_t>(a)], sb = cutter.side[static_cast<std::size_t>(b)];
+    const double sa = cutter.side[a], sb = cutter.side[b];
     if (sa <= 0) kept.push_back(a);
     if (sa * sb < 0) kept.push_back(crossing(cutter, a, b));
   }
@@ -64,7 +64,7 @@ Shape packed(const std::vector<Vec3>& x, std::vector<std::array<int, 3>> triangl
   int count = 0;
   for (auto& t : triangles)
     for (int& v : t) {
-      int& fresh = number[static_cast<std::size_t>(v)];
+      int& fresh = number[v];
       if (fresh < 0) fresh = count++;
       v = fresh;
     }
@@ -88,7 +88,7 @@ Shape clipped(const Shape& shape, const Border& border, std::span<const Border> 
   for (const auto& t : shape.triangles.rowwise()) {
     const std::array<int, 3> corners{t[0], t[1], t[2]};
     bool any_inside = false;  // a triangle with all corners on the border or beyond has no part inside
-    for (const int v : corners) any_inside = any_inside || cutter.side[static_cast<std::size_t>(v)] < 0;
+    for (const int v : corners) any_inside = any_inside || cutter.side[v] < 0;
     if (any_inside) cut(cutter, corners);
   }
   return packed(cutter.x, std::move(cutter.triangles));
@@ -97,13 +97,13 @@ Shape clipped(const Shape& shape, const Border& border, std::span<const Border> 
 Shape largest_component(const Shape& shape) {
   const Surface surface = make_surface(static_cast<int>(shape.x.rows()), shape.triangles);
   std::vector<int> size(static_cast<std::size_t>(surface.component_count), 0);
-  for (const int component : surface.component) ++size[static_cast<std::size_t>(component)];
+  for (const int component : surface.component) ++size[component];
   const auto largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
   std::vector<Vec3> x;
   for (int v = 0; v < shape.x.rows(); ++v) x.push_back(row(shape.x, v));
   std::vector<std::array<int, 3>> kept;
   for (const auto& t : shape.triangles.rowwise())
-    if (surface.component[static_cast<std::size_t>(t[0])] == largest) kept.push_back({t[0], t[1], t[2]});
+    if (surface.component[t[0]] == largest) kept.push_back({t[0], t[1], t[2]});
   return packed(x, std::move(kept));
 }
 

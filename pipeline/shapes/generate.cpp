@@ -31,7 +31,7 @@ TriangleList structured(int columns, int rows, bool closed, Triangulation triang
 
 std::vector<bool> mask(Eigen::Index size, const std::vector<int>& vertices) {
   std::vector<bool> fixed(static_cast<std::size_t>(size), false);
-  for (const int v : vertices) fixed[static_cast<std::size_t>(v)] = true;
+  for (const int v : vertices) fixed[v] = true;
   return fixed;
 }
 
@@ -93,8 +93,8 @@ std::vector<Row> straight_rows(const Vec2& size, int columns, int rows) {
   std::vector<Row> result(static_cast<std::size_t>(rows));
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
-      result[static_cast<std::size_t>(j)].vertices.push_back(j * columns + i);
-      result[static_cast<std::size_t>(j)].u.push_back(size.x() * i / (columns - 1) - size.x() / 2);
+      result[j].vertices.push_back(j * columns + i);
+      result[j].u.push_back(size.x() * i / (columns - 1) - size.x() / 2);
     }
   return result;
 }
@@ -170,7 +170,7 @@ Mesh make_rectangle(const Vec2& size, int columns, int rows, const SheetOptions&
   Mesh mesh;
   mesh.uv.resize(lines.back().vertices.back() + 1, 2);
   for (int j = 0; j < rows; ++j) {
-    const Row& line = lines[static_cast<std::size_t>(j)];
+    const Row& line = lines[j];
     for (std::size_t i = 0; i < line.u.size(); ++i)
       mesh.uv.row(line.vertices[i]) << line.u[i], size.y() * j / (rows - 1) - size.y() / 2;
   }

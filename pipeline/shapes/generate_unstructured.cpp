@@ -45,8 +45,7 @@ void shake(Points2& uv, const Triangles& triangles, const std::vector<bool>& fix
   std::mt19937_64 random(seed);
   for (int v = 0; v < uv.rows(); ++v) {
     const double angle = 2 * std::numbers::pi * uniform(random), length = amount * std::sqrt(uniform(random));
-    if (!fixed[static_cast<std::size_t>(v)])
-      move_safely(uv, triangles, surface, v, {length * std::cos(angle), length * std::sin(angle)}, period);
+    if (!fixed[v]) move_safely(uv, triangles, surface, v, {length * std::cos(angle), length * std::sin(angle)}, period);
   }
 }
 
@@ -54,7 +53,7 @@ void shake(Points2& uv, const Triangles& triangles, const std::vector<bool>& fix
 void smooth(Points2& uv, const Triangles& triangles, const std::vector<bool>& fixed, double part, double period) {
   const Surface surface = make_surface(static_cast<int>(uv.rows()), triangles);
   for (int v = 0; v < uv.rows(); ++v) {
-    if (fixed[static_cast<std::size_t>(v)]) continue;
+    if (fixed[v]) continue;
     Eigen::RowVector2d sum = Eigen::RowVector2d::Zero();  // each neighbour of an inner vertex counts twice
     for (const int t : surface.triangles_of(v))
       for (int k = 0; k < 3; ++k) sum += across(uv, v, triangles(t, k), period).transpose();
@@ -80,8 +79,8 @@ int flip_sweep(const Points2& uv, Triangles& triangles, double period) {
   std::vector<bool> done(static_cast<std::size_t>(triangles.rows()), false);
   int flips = 0;
   for (int e = 0; e < surface.edges.rows(); ++e) {
-    const auto [s, t] = surface.edge_triangles[static_cast<std::size_t>(e)];
-    if (t < 0 || done[static_cast<std::size_t>(s)] || done[static_cast<std::size_t>(t)]) continue;
+    const auto [s, t] = surface.edge_triangles[e];
+    if (t < 0 || done[s] || done[t]) continue;
     int a = surface.edges(e, 0), b = surface.edges(e, 1);
     const int c = opposite(triangles, s, a, b), d = opposite(triangles, t, a, b);
     // The edge is Delaunay if the angles that face it sum to at most pi.
@@ -89,7 +88,7 @@ int flip_sweep(const Points2& uv, Triangles& triangles, double period) {
     if (cross(across(uv, a, b, period), across(uv, a, c, period)) < 0) std::swap(a, b);
     triangles.row(s) << a, d, c;
     triangles.row(t) << d, b, c;
-    done[static_cast<std::size_t>(s)] = done[static_cast<std::size_t>(t)] = true;
+    done[s] = done[t] = true;
     ++flips;
   }
   return flips;

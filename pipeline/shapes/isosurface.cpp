@@ -33,7 +33,7 @@ struct Grid {
                              static_cast<double>(n / (nodes[0] * nodes[1])));
   }
   double at(long n) {
-    double& known = values[static_cast<std::size_t>(n)];
+    double& known = values[n];
     if (std::isnan(known)) known = value(position(n));
     return known;
   }
@@ -49,24 +49,19 @@ struct Grid {
 };
 
 void add_triangle(Grid& grid, std::array<int, 3> corners, const Vec3& outward) {
-  const auto at = [&](int k) -> const Vec3& { return grid.x[static_cast<std::size_t>(corners[k])]; };
+  const auto at = [&](int k) -> const Vec3& { return grid.x[corners[k]]; };
   if ((at(1) - at(0)).cross(at(2) - at(0)).dot(outward) < 0) std::swap(corners[1], corners[2]);
   grid.triangles.push_back(corners);
 }
 
 void march(Grid& grid, const std::array<long, 8>& node, const std::array<int, 4>& tetrahedron) {
   std::vector<int> in, out;
-  for (const int corner : tetrahedron)
-    (grid.at(node[static_cast<std::size_t>(corner)]) < 0 ? in : out).push_back(corner);
+  for (const int corner : tetrahedron) (grid.at(node[corner]) < 0 ? in : out).push_back(corner);
   if (in.empty() || out.empty()) return;
-  const auto vertex = [&](int a, int b) {
-    return grid.vertex(node[static_cast<std::size_t>(std::min(a, b))], node[static_cast<std::size_t>(std::max(a, b))],
-                       a ^ b);
-  };
+  const auto vertex = [&](int a, int b) { return grid.vertex(node[std::min(a, b)], node[std::max(a, b)], a ^ b); };
   Vec3 outward = Vec3::Zero();
   for (const int b : out)
-    for (const int a : in)
-      outward += grid.position(node[static_cast<std::size_t>(b)]) - grid.position(node[static_cast<std::size_t>(a)]);
+    for (const int a : in) outward += grid.position(node[b]) - grid.position(node[a]);
   std::vector<int> loop;
   if (in.size() == 2)
     loop = {vertex(in[0], out[0]), vertex(in[0], out[1]), vertex(in[1], out[1]), vertex(in[1], out[0])};
@@ -98,8 +93,7 @@ Shape isosurface(const std::function<double(const Vec3&)>& value, const Vec3& lo
                     k = c * block + cube / block / block;
           std::array<long, 8> node{};
           for (int corner = 0; corner < 8; ++corner)
-            node[static_cast<std::size_t>(corner)] =
-                grid.node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
+            node[corner] = grid.node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
           for (const auto& tetrahedron : tetrahedra) march(grid, node, tetrahedron);
         }
       }

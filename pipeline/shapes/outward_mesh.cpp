@@ -68,12 +68,11 @@ void turn_outward(const std::string& name, const NamedVertices& groups, std::spa
   triangles = std::move(outward.triangles);
   std::vector<int> group_of(static_cast<std::size_t>(frames.empty() ? 0 : frames[0].rows()), -1);
   for (std::size_t g = groups.size(); g-- > 0;)  // the first group with a vertex counts
-    for (const int v : groups[g].second) group_of[static_cast<std::size_t>(v)] = static_cast<int>(g);
+    for (const int v : groups[g].second) group_of[v] = static_cast<int>(g);
   std::map<int, Findings> by_group;
-  for (const Shell& shell : outward.shells) add(shell, by_group[group_of[static_cast<std::size_t>(shell.vertex)]]);
+  for (const Shell& shell : outward.shells) add(shell, by_group[group_of[shell.vertex]]);
   for (const auto& [group, found] : by_group)
-    say(group < 0 ? name : fmt::format("{}, mesh `{}`", name, groups[static_cast<std::size_t>(group)].first), found,
-        warnings);
+    say(group < 0 ? name : fmt::format("{}, mesh `{}`", name, groups[group].first), found, warnings);
 }
 
 void turn_outward(const std::string& name, Mesh& mesh, std::vector<std::string>& warnings) {

@@ -26,14 +26,14 @@ OwnCrossings own_crossings(const NamedVertices& meshes, const Points& x, const T
   const Surface& whole = welded ? welded->surface : surface;
   std::vector<int> mesh_of(static_cast<std::size_t>(x.rows()), -1);
   for (std::size_t m = meshes.size(); m-- > 0;)  // the first mesh with a vertex counts
-    for (const int v : meshes[m].second) mesh_of[static_cast<std::size_t>(v)] = static_cast<int>(m);
-  const auto mesh = [&](int triangle) { return mesh_of[static_cast<std::size_t>(whole.triangles(triangle, 0))]; };
+    for (const int v : meshes[m].second) mesh_of[v] = static_cast<int>(m);
+  const auto mesh = [&](int triangle) { return mesh_of[whole.triangles(triangle, 0)]; };
   OwnCrossings found;
   IntersectionCache cache;
   try {
     std::map<std::pair<int, int>, int> count;
     for (const auto& [a, b] : intersecting_pairs(whole, x, cache)) ++count[std::minmax(mesh(a), mesh(b))];
-    const auto name = [&](int m) { return m < 0 ? std::string() : meshes[static_cast<std::size_t>(m)].first; };
+    const auto name = [&](int m) { return m < 0 ? std::string() : meshes[m].first; };
     for (const auto& [both, pairs] : count) found.between.push_back({name(both.first), name(both.second), pairs});
   } catch (const TooManyPairs&) {
     found.too_many = true;

@@ -94,7 +94,7 @@ Shape make_sphere(double radius, double edge) {
       std::array<std::pair<int, int>, 3> key{{{face[0], n - i - j}, {face[1], i}, {face[2], j}}};
       Vec3 p = Vec3::Zero();
       for (auto& [corner, weight] : key) {
-        p += weight * ico.corners[static_cast<std::size_t>(corner)];
+        p += weight * ico.corners[corner];
         if (weight == 0) corner = -1;
       }
       std::sort(key.begin(), key.end());

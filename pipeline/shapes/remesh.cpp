@@ -22,13 +22,13 @@ struct Work {
   const std::vector<Border>& borders;  // in which the boundary lies
   std::vector<std::uint32_t> lies_in;  // of each boundary vertex, one bit per border
 
-  const Vec3& at(int vertex) const { return x[static_cast<std::size_t>(vertex)]; }
-  std::array<int, 3>& triangle(int t) { return triangles[static_cast<std::size_t>(t)]; }
-  const std::array<int, 3>& triangle(int t) const { return triangles[static_cast<std::size_t>(t)]; }
+  const Vec3& at(int vertex) const { return x[vertex]; }
+  std::array<int, 3>& triangle(int t) { return triangles[t]; }
+  const std::array<int, 3>& triangle(int t) const { return triangles[t]; }
   double length(int edge) const { return (at(surface.edges(edge, 1)) - at(surface.edges(edge, 0))).norm(); }
   Vec3 middle(int edge) const { return 0.5 * (at(surface.edges(edge, 0)) + at(surface.edges(edge, 1))); }
-  bool is_boundary(int edge) const { return surface.edge_triangles[static_cast<std::size_t>(edge)][1] < 0; }
-  std::uint32_t borders_of(int vertex) const { return lies_in[static_cast<std::size_t>(vertex)]; }
+  bool is_boundary(int edge) const { return surface.edge_triangles[edge][1] < 0; }
+  std::uint32_t borders_of(int vertex) const { return lies_in[vertex]; }
   bool is_corner(int vertex) const { return std::popcount(borders_of(vertex)) > 1; }
   int opposite(int t, int a, int b) const {
     for (const int v : triangle(t))
@@ -73,21 +73,21 @@ void pack(Work& work) {
   std::erase_if(work.triangles, [](const auto& t) { return t[0] < 0; });
   std::vector<int> number(work.x.size(), -1);
   for (const auto& t : work.triangles)
-    for (const int v : t) number[static_cast<std::size_t>(v)] = 0;
+    for (const int v : t) number[v] = 0;
   int count = 0;
   for (std::size_t v = 0; v < number.size(); ++v)
     if (number[v] == 0) {
-      work.x[static_cast<std::size_t>(count)] = work.x[v];
+      work.x[count] = work.x[v];
       number[v] = count++;
     }
   work.x.resize(static_cast<std::size_t>(count));
   for (auto& t : work.triangles)
-    for (int& v : t) v = number[static_cast<std::size_t>(v)];
+    for (int& v : t) v = number[v];
   work.surface = make_surface(count, to_triangles(work.triangles));
   work.boundary.assign(work.x.size(), 0);
   for (int e = 0; e < work.surface.edges.rows(); ++e)
     if (work.is_boundary(e))
-      for (const int k : {0, 1}) work.boundary[static_cast<std::size_t>(work.surface.edges(e, k))] = 1;
+      for (const int k : {0, 1}) work.boundary[work.surface.edges(e, k)] = 1;
   work.lies_in.assign(work.x.size(), 0);
   for (std::size_t v = 0; v < work.x.size(); ++v)
     if (work.boundary[v]) work.lies_in[v] = borders_at(work, work.x[v]);
@@ -126,14 +126,13 @@ bool split_round(Work& work, const RemeshTarget& target, double longest) {
   const auto chosen = edges_below(work, -longest, [&](int e) { return -relative_length(work, target, e); });
   bool changed = false;
   for (const int e : chosen) {
-    const auto sides = work.surface.edge_triangles[static_cast<std::size_t>(e)];
-    if (std::any_of(sides.begin(), sides.end(), [&](int t) { return t >= 0 && used[static_cast<std::size_t>(t)]; }))
-      continue;
+    const auto sides = work.surface.edge_triangles[e];
+    if (std::any_of(sides.begin(), sides.end(), [&](int t) { return t >= 0 && used[t]; })) continue;
     const int a = work.surface.edges(e, 0), b = work.surface.edges(e, 1), fresh = static_cast<int>(work.x.size());
     work.x.push_back(middle_on_borders(work, e));
     for (const int t : sides) {
       if (t < 0) continue;
-      used[static_cast<std::size_t>(t)] = 1;
+      used[t] = 1;
       auto half = work.triangle(t);
       std::replace(half.begin(), half.end(), a, fresh);
       std::replace(work.triangle(t).begin(), work.triangle(t).end(), b, fresh);
@@ -172,12 +171,12 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
   bool changed = false;
   for (const int e : chosen) {
     int kept = work.surface.edges(e, 0), gone = work.surface.edges(e, 1);
-    if (work.boundary[static_cast<std::size_t>(gone)]) std::swap(kept, gone);
-    const bool both = work.boundary[static_cast<std::size_t>(gone)];
+    if (work.boundary[gone]) std::swap(kept, gone);
+    const bool both = work.boundary[gone];
     if (both && !work.is_boundary(e)) continue;
     if (!may_vanish(work, gone, kept)) std::swap(kept, gone);
     if (!may_vanish(work, gone, kept)) continue;
-    const auto is_used = [&](int v) { return used[static_cast<std::size_t>(v)] != 0; };
+    const auto is_used = [&](int v) { return used[v] != 0; };
     if (is_used(kept) || is_used(gone)) continue;
     const auto around_gone = ring(work, gone), around_kept = ring(work, kept);
     if (std::any_of(around_gone.begin(), around_gone.end(), is_used) ||
@@ -188,10 +187,9 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
                           std::back_inserter(common));
     if (common.size() != (work.is_boundary(e) ? 1u : 2u)) continue;  // the link condition
     // No edge across the half may join two boundary vertices: its mirror image would be the same edge.
-    const bool kept_at_boundary = work.boundary[static_cast<std::size_t>(kept)];
+    const bool kept_at_boundary = work.boundary[kept];
     if (kept_at_boundary && !both && std::any_of(around_gone.begin(), around_gone.end(), [&](int v) {
-          return v != kept && work.boundary[static_cast<std::size_t>(v)] &&
-                 !std::binary_search(around_kept.begin(), around_kept.end(), v);
+          return v != kept && work.boundary[v] && !std::binary_search(around_kept.begin(), around_kept.end(), v);
         }))
       continue;
     const Vec3 to = (kept_at_boundary && !both) || work.is_corner(kept) ? work.at(kept) : middle_on_borders(work, e);
@@ -203,10 +201,10 @@ bool collapse_round(Work& work, const RemeshTarget& target, double shortest, dou
       else
         std::replace(corners.begin(), corners.end(), gone, kept);
     }
-    work.x[static_cast<std::size_t>(kept)] = to;
+    work.x[kept] = to;
     for (const auto* list : {&around_gone, &around_kept})
-      for (const int v : *list) used[static_cast<std::size_t>(v)] = 1;
-    used[static_cast<std::size_t>(kept)] = used[static_cast<std::size_t>(gone)] = 1;
+      for (const int v : *list) used[v] = 1;
+    used[kept] = used[gone] = 1;
     changed = true;
   }
   if (changed) pack(work);
@@ -220,15 +218,14 @@ double cosine_at(const Vec3& corner, const Vec3& a, const Vec3& b) {
 // The change by a flip; below zero is a gain: in squared deviations from valence 6 (4 at the boundary), or in cosines
 // of the opposite angles, whose sum is negative if they exceed pi together.
 double flip_gain(const Work& work, const std::vector<int>& valence, int e, bool by_angles) {
-  const auto [s, t] = work.surface.edge_triangles[static_cast<std::size_t>(e)];
+  const auto [s, t] = work.surface.edge_triangles[e];
   if (t < 0) return 0;
   const int a = work.surface.edges(e, 0), b = work.surface.edges(e, 1);
   const int c = work.opposite(s, a, b), d = work.opposite(t, a, b);
   if (by_angles)
     return cosine_at(work.at(c), work.at(a), work.at(b)) + cosine_at(work.at(d), work.at(a), work.at(b)) + 0.02;
   const auto deviation = [&](int v, int change) {
-    const int off =
-        valence[static_cast<std::size_t>(v)] + change - (work.boundary[static_cast<std::size_t>(v)] ? 4 : 6);
+    const int off = valence[v] + change - (work.boundary[v] ? 4 : 6);
     return off * off;
   };
   int gain = 0;
@@ -240,15 +237,15 @@ double flip_gain(const Work& work, const std::vector<int>& valence, int e, bool 
 bool flip_round(Work& work, bool by_angles) {
   std::vector<int> valence(work.x.size(), 0);
   for (int e = 0; e < work.surface.edges.rows(); ++e)
-    for (const int k : {0, 1}) ++valence[static_cast<std::size_t>(work.surface.edges(e, k))];
+    for (const int k : {0, 1}) ++valence[work.surface.edges(e, k)];
   std::vector<char> used(work.x.size(), 0);
   bool changed = false;
   for (const int e : edges_below(work, 0, [&](int edge) { return flip_gain(work, valence, edge, by_angles); })) {
-    const auto [s, t] = work.surface.edge_triangles[static_cast<std::size_t>(e)];
+    const auto [s, t] = work.surface.edge_triangles[e];
     const int a = work.surface.edges(e, 0), b = work.surface.edges(e, 1);
     const int c = work.opposite(s, a, b), d = work.opposite(t, a, b);
-    bool free = !(work.boundary[static_cast<std::size_t>(c)] && work.boundary[static_cast<std::size_t>(d)]);
-    for (const int v : {a, b, c, d}) free = free && !used[static_cast<std::size_t>(v)];
+    bool free = !(work.boundary[c] && work.boundary[d]);
+    for (const int v : {a, b, c, d}) free = free && !used[v];
     if (!free) continue;
     const auto around = ring(work, c);
     if (std::binary_search(around.begin(), around.end(), d)) continue;
@@ -260,7 +257,7 @@ bool flip_round(Work& work, bool by_angles) {
     if (n0.dot(before) < 0.7 * n0.norm() * before.norm() || n1.dot(before) < 0.7 * n1.norm() * before.norm()) continue;
     work.triangle(s) = first;
     work.triangle(t) = second;
-    for (const int v : {a, b, c, d}) used[static_cast<std::size_t>(v)] = 1;
+    for (const int v : {a, b, c, d}) used[v] = 1;
     changed = true;
   }
   if (changed) pack(work);
@@ -276,9 +273,9 @@ void relax(Work& work, const RemeshTarget& target) {
     const Vec3 centre = (work.at(t[0]) + work.at(t[1]) + work.at(t[2])) / 3;
     const double edge = target.edge(centre), share = normal(work, t).norm() / (edge * edge);
     for (const int v : t)
-      if (!work.boundary[static_cast<std::size_t>(v)]) {
-        sum[static_cast<std::size_t>(v)] += share * centre;
-        weight[static_cast<std::size_t>(v)] += share;
+      if (!work.boundary[v]) {
+        sum[v] += share * centre;
+        weight[v] += share;
       }
   }
   for (int e = 0; e < work.surface.edges.rows(); ++e)
