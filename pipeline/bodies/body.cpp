@@ -79,6 +79,12 @@ Eigen::Matrix<double, 3, 4> blended(const SkinWeights& weights, Eigen::Index ver
 
 }  // namespace
 
+SkinWeights from_entries(Eigen::Index rows, Eigen::Index cols, const std::vector<Eigen::Triplet<double>>& entries) {
+  SkinWeights matrix(rows, cols);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
 Points shaped(const SkinnedSurface& skin, const Eigen::VectorXd& shape) {
   check_shape(skin, shape);
   Points x = skin.rest;

@@ -13,6 +13,9 @@ namespace selvedge {
 
 using SkinWeights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+// The matrix of these entries; those at one place are summed.
+SkinWeights from_entries(Eigen::Index rows, Eigen::Index cols, const std::vector<Eigen::Triplet<double>>& entries);
+
 // The surface that linear blend skinning deforms: a body, or a garment that follows one.
 struct SkinnedSurface {
   Points rest;  // n x 3 in the zero pose and zero shape [m]

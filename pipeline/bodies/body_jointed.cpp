@@ -84,9 +84,7 @@ void set_weights(const Points& joints, const Config& given, BodyModel& body) {
   if (!welded) return;
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < n; ++v) entries.emplace_back(v, welded->joined[v], 1);
-  SkinWeights of_joined(n, n);
-  of_joined.setFromTriplets(entries.begin(), entries.end());
-  body.skin.weights = SkinWeights(of_joined * body.skin.weights);
+  body.skin.weights = SkinWeights(from_entries(n, n, entries) * body.skin.weights);
 }
 
 }  // namespace

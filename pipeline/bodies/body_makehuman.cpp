@@ -91,8 +91,7 @@ SkinWeights folded(const std::vector<RigWeight>& weights, const std::vector<int>
     if (one.weight > 0 && vertex < part.row_of.size() && part.row_of[vertex] >= 0)
       entries.emplace_back(part.row_of[vertex], joints[one.bone], one.weight);
   }
-  SkinWeights sums(static_cast<Eigen::Index>(part.vertices.size()), smpl::joints);
-  sums.setFromTriplets(entries.begin(), entries.end());
+  SkinWeights sums = from_entries(std::ssize(part.vertices), smpl::joints, entries);
   for (Eigen::Index v = 0; v < sums.rows(); ++v) {
     const double sum = sums.row(v).sum();
     if (sum == 0)

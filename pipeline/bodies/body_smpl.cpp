@@ -104,13 +104,6 @@ Eigen::MatrixXd read_shape_directions(const Npz& npz, Index vertices, std::size_
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-SkinWeights from_entries(Index rows, Index cols, const Entries& entries) {
-  SkinWeights matrix(rows, cols);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  matrix.makeCompressed();
-  return matrix;
-}
-
 SkinWeights without_zeros(const NpyArray<double>& dense) {
   Entries entries;
   const Index cols = dense.shape[1];

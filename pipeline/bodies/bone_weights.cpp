@@ -196,9 +196,7 @@ SkinWeights bone_weights(const Surface& surface, const Points& rest, const Point
     for (int j = 0; j < warmth.cols(); ++j)
       if (warmth(v, j) >= least_weight) entries.emplace_back(v, j, warmth(v, j) / sum);
   }
-  SkinWeights weights(warmth.rows(), warmth.cols());
-  weights.setFromTriplets(entries.begin(), entries.end());
-  return weights;
+  return from_entries(warmth.rows(), warmth.cols(), entries);
 }
 
 }  // namespace selvedge

@@ -63,9 +63,7 @@ SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::option
       if (share[static_cast<Eigen::Index>(k)] > 0)
         entries.emplace_back(j, vertices[k], share[static_cast<Eigen::Index>(k)]);
   }
-  SkinWeights regressor(static_cast<Eigen::Index>(body.joints.size()), rest.rows());
-  regressor.setFromTriplets(entries.begin(), entries.end());
-  return regressor;
+  return from_entries(std::ssize(body.joints), rest.rows(), entries);
 }
 
 }  // namespace selvedge

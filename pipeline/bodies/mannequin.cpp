@@ -14,7 +14,7 @@ std::string mannequin_name() { return "mannequin " + std::to_string(mannequin_re
 }  // namespace
 
 BodyModel make_mannequin() {
-  const MannequinMesh mesh = mannequin_mesh();
+  const MirroredMesh mesh = mannequin_mesh();
   const Eigen::MatrixXd weights = mannequin_weights(mesh);
   BodyModel body;
   body.name = mannequin_name();
@@ -25,10 +25,10 @@ BodyModel make_mannequin() {
   body.skin.weights = weights.sparseView(1, 0);
   body.skin.weights.makeCompressed();
   body.skin.shape_directions = mannequin_directions(mesh, weights);
-  body.skin.pose_directions.resize(3 * mesh.x.rows(), 0);
-  body.regressor = mannequin_regressor(mesh);
-  body.skin.rest = mesh.x.rowwise() - mannequin_joints().front().position.transpose();
-  body.skin.triangles = mesh.triangles;
+  body.skin.pose_directions.resize(3 * mesh.shape.x.rows(), 0);
+  body.regressor = mannequin_regressor(mesh.shape.x);
+  body.skin.rest = mesh.shape.x.rowwise() - mannequin_joints().front().position.transpose();
+  body.skin.triangles = mesh.shape.triangles;
   return body;
 }
 

@@ -29,7 +29,7 @@ Band band_of(const std::string& joint) {
 
 }  // namespace
 
-SkinWeights mannequin_regressor(const MannequinMesh& mesh) {
+SkinWeights mannequin_regressor(const Points& x) {
   const auto joints = mannequin_joints();
   std::vector<Eigen::Triplet<double>> entries;
   for (int j = 0; j < static_cast<int>(joints.size()); ++j) {
@@ -38,23 +38,21 @@ SkinWeights mannequin_regressor(const MannequinMesh& mesh) {
     const Band band = band_of(name);
     std::vector<int> vertices;
     std::vector<double> weights;
-    for (int v = 0; v < mesh.x.rows(); ++v) {
-      const Vec3 q = row(mesh.x, v) - point;
+    for (int v = 0; v < x.rows(); ++v) {
+      const Vec3 q = row(x, v) - point;
       const double along = q[band.axis] / band.band, far = q.norm() / band.reach;
-      const bool same_side = point.x() == 0 || point.x() * mesh.x(v, 0) > 0;
+      const bool same_side = point.x() == 0 || point.x() * x(v, 0) > 0;
       if (!same_side || std::abs(along) >= 1 || far >= 1) continue;
       vertices.push_back(v);
       weights.push_back((1 - along * along) * (1 - along * along) * (1 - far * far));
     }
     Eigen::VectorXd w = Eigen::Map<Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
     w /= w.sum();
-    meet(mesh.x, vertices, point, w);
+    meet(x, vertices, point, w);
     for (std::size_t k = 0; k < vertices.size(); ++k)
       if (w[static_cast<Eigen::Index>(k)] > 0) entries.emplace_back(j, vertices[k], w[static_cast<Eigen::Index>(k)]);
   }
-  SkinWeights regressor(static_cast<Eigen::Index>(joints.size()), mesh.x.rows());
-  regressor.setFromTriplets(entries.begin(), entries.end());
-  return regressor;
+  return from_entries(std::ssize(joints), x.rows(), entries);
 }
 
 }  // namespace selvedge

@@ -92,7 +92,7 @@ constexpr std::array fields{height,    weight, leg_length, arm_length, shoulder_
                             hip_width, waist,  chest,      muscle,     head_size};
 static_assert(fields.size() == mannequin_shapes.size());
 
-Place place_of(const MannequinMesh& mesh, const Eigen::MatrixXd& weights, int vertex) {
+Place place_of(const MirroredMesh& mesh, const Eigen::MatrixXd& weights, int vertex) {
   const auto joints = mannequin_joints();
   const auto sum = [&](std::initializer_list<std::string> parts) {
     double total = 0;
@@ -103,7 +103,7 @@ Place place_of(const MannequinMesh& mesh, const Eigen::MatrixXd& weights, int ve
     }
     return total;
   };
-  Place at{row(mesh.x, vertex),
+  Place at{row(mesh.shape.x, vertex),
            sum({"head"}),
            sum({"shoulder", "elbow", "wrist", "hand"}),
            sum({"wrist", "hand"}),
@@ -116,8 +116,8 @@ Place place_of(const MannequinMesh& mesh, const Eigen::MatrixXd& weights, int ve
 
 }  // namespace
 
-Eigen::MatrixXd mannequin_directions(const MannequinMesh& mesh, const Eigen::MatrixXd& weights) {
-  Eigen::MatrixXd directions(3 * mesh.x.rows(), static_cast<Eigen::Index>(fields.size()));
+Eigen::MatrixXd mannequin_directions(const MirroredMesh& mesh, const Eigen::MatrixXd& weights) {
+  Eigen::MatrixXd directions(3 * mesh.shape.x.rows(), static_cast<Eigen::Index>(fields.size()));
   for (int v = 0; v < mesh.half; ++v) {
     const Place at = place_of(mesh, weights, v);
     const int twin = mesh.twin[v];

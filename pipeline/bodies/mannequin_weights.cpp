@@ -99,13 +99,13 @@ void thin_out(Eigen::Ref<Eigen::RowVectorXd> weights, int most) {
 
 }  // namespace
 
-Eigen::MatrixXd mannequin_weights(const MannequinMesh& mesh) {
+Eigen::MatrixXd mannequin_weights(const MirroredMesh& mesh) {
   constexpr int rounds = 4, most = 6;
   const auto joints = mannequin_joints();
   const auto other = other_sides(joints);
-  Eigen::MatrixXd weights(mesh.x.rows(), static_cast<Eigen::Index>(joints.size()));
-  for (int v = 0; v < mesh.x.rows(); ++v) weights.row(v) = shares_of_tree(joints, other, row(mesh.x, v));
-  const Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
+  Eigen::MatrixXd weights(mesh.shape.x.rows(), static_cast<Eigen::Index>(joints.size()));
+  for (int v = 0; v < mesh.shape.x.rows(); ++v) weights.row(v) = shares_of_tree(joints, other, row(mesh.shape.x, v));
+  const Surface surface = make_surface(static_cast<int>(mesh.shape.x.rows()), mesh.shape.triangles);
   for (int i = 0; i < rounds; ++i) weights = averaged(surface, weights);
   for (int v = 0; v < mesh.half; ++v) {
     const int twin = mesh.twin[v];

@@ -75,9 +75,7 @@ SkinWeights mixed_weights(const SkinWeights& from, const std::vector<Shares>& sh
     for (Eigen::Index j = 0; j < weights.size(); ++j)
       if (weights[j] > 0) entries.emplace_back(static_cast<int>(v), static_cast<int>(j), weights[j]);
   }
-  SkinWeights to(static_cast<Eigen::Index>(shares.size()), from.cols());
-  to.setFromTriplets(entries.begin(), entries.end());
-  return to;
+  return from_entries(std::ssize(shares), from.cols(), entries);
 }
 
 }  // namespace
@@ -96,9 +94,7 @@ SkinWeights shares_of_body(const Points& x, const BodyModel& body, double width)
   const std::vector<Shares> shares = all_shares(x, body.skin, Fit::loose, width);
   for (std::size_t v = 0; v < shares.size(); ++v)
     for (const auto& [vertex, share] : shares[v]) entries.emplace_back(static_cast<int>(v), vertex, share);
-  SkinWeights all(x.rows(), body.skin.rest.rows());
-  all.setFromTriplets(entries.begin(), entries.end());
-  return all;
+  return from_entries(x.rows(), body.skin.rest.rows(), entries);
 }
 
 Points skinned(const Garment& garment, const BodyModel& body, const Eigen::VectorXd& shape, const BodyPose& pose) {

@@ -121,9 +121,7 @@ SkinWeights exact_regressor(const BodyModel& body, const Points& joints, const s
       throw Error("lies in one plane", file + ": meshes", "give the surface of a body");
     for (int v = 0; v < weights.size(); ++v) entries.emplace_back(j, v, weights[v]);
   }
-  SkinWeights regressor(joints.rows(), x.rows());
-  regressor.setFromTriplets(entries.begin(), entries.end());
-  return regressor;
+  return from_entries(joints.rows(), x.rows(), entries);
 }
 
 // The three or four numbers of a track at a time.
@@ -245,8 +243,7 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
   for (Eigen::Index v = 0; v < scene.weights.rows(); ++v)
     for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator w(scene.weights, v); w; ++w)
       weights.emplace_back(v, place[w.col()], w.value());
-  body.skin.weights.resize(scene.weights.rows(), joints.rows());
-  body.skin.weights.setFromTriplets(weights.begin(), weights.end());
+  body.skin.weights = from_entries(scene.weights.rows(), joints.rows(), weights);
   body.skin.shape_directions.resize(3 * body.skin.rest.rows(), 0);
   body.regressor = exact_regressor(body, joints, rig.file);
   check_body(body, rig.file);
