@@ -337,9 +337,8 @@ std::vector<std::string> add_meshes(const Document& file, int skin, const NameCh
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
       add_primitive(file, mesh.primitives[p], fmt::format("mesh `{}`, primitive {}", name, p),
                     static_cast<int>(scene.joints.size()), weights, scene.mesh);
-    auto group = std::ranges::find(scene.mesh.groups, name, &NamedVertices::value_type::first);
-    if (group == scene.mesh.groups.end()) group = scene.mesh.groups.insert(group, {name, {}});
-    for (int v = first; v < static_cast<int>(scene.mesh.x.rows()); ++v) group->second.push_back(v);
+    std::vector<int>& group = group_named(scene.mesh.groups, name);
+    for (int v = first; v < static_cast<int>(scene.mesh.x.rows()); ++v) group.push_back(v);
   }
   return names;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,12 @@ namespace selvedge {
 
 // Parts of a mesh: names, and the vertices of each, ascending.
 using NamedVertices = std::vector<std::pair<std::string, std::vector<int>>>;
+
+// The vertices of the part of that name, which is added where there is none.
+inline std::vector<int>& group_named(NamedVertices& parts, const std::string& name) {
+  const auto known = std::ranges::find(parts, name, &NamedVertices::value_type::first);
+  return known != parts.end() ? known->second : parts.emplace_back(name, std::vector<int>()).second;
+}
 
 // A triangle mesh as a file has it.
 struct Mesh {

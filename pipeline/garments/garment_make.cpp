@@ -8,6 +8,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/surface.hpp"
+#include "pipeline/bodies/mannequin_skin.hpp"
 #include "pipeline/garments/garment_trim.hpp"
 #include "pipeline/shapes/clipped.hpp"
 #include "pipeline/shapes/isosurface.hpp"
@@ -24,20 +25,14 @@ const GarmentCut& cut_of(const std::string& name) {
               "one of " + fmt::format("{}", fmt::join(garment_names(), ", ")));
 }
 
-// From 0 to 1, smoothly.
-double rise(double value, double from, double to) {
-  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 double ease_at(const GarmentCut& cut, const Vec3& p) {
   double ease = at(cut.ease, p.y());
   const double reach = std::abs(p.x());
   if (!cut.sleeve_ease.empty())  // sleeves begin at the shoulders and only above the armpits
-    ease += rise(reach, 0.16, 0.24) * rise(p.y(), 1.10, 1.25) * (at(cut.sleeve_ease, reach) - ease);
+    ease += smooth_step(reach, 0.16, 0.24) * smooth_step(p.y(), 1.10, 1.25) * (at(cut.sleeve_ease, reach) - ease);
   if (cut.legs_apart) {  // between the legs there is little room
     constexpr double least = 0.004;
-    ease += (1 - rise(reach, 0.03, 0.11)) * (1 - rise(p.y(), 0.78, 0.90)) * (least - ease);
+    ease += (1 - smooth_step(reach, 0.03, 0.11)) * (1 - smooth_step(p.y(), 0.78, 0.90)) * (least - ease);
   }
   return ease;
 }
@@ -89,44 +84,37 @@ Shape half_of(const GarmentCut& cut, const Field& field, double edge) {
   return remeshed(largest_component(shape), target, rounds);
 }
 
-using Groups = std::vector<std::pair<std::string, std::vector<int>>>;
-
-void add(Groups& groups, const std::string& name, int vertex) {
-  const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == name; });
-  if (known != groups.end())
-    known->second.push_back(vertex);
-  else
-    groups.push_back({name, {vertex}});
-}
-
-void add_opening_groups(const GarmentCut& cut, const Shape& shape, Groups& groups) {
+void add_opening_groups(const GarmentCut& cut, const Shape& shape, NamedVertices& groups) {
   const Surface surface = make_surface(static_cast<int>(shape.x.rows()), shape.triangles);
   for (const std::vector<int>& loop : boundary_loops(surface))
     for (const int v : loop) {
       const Vec3 p = row(shape.x, v), q(std::abs(p.x()), p.y(), p.z());
       for (const Opening& opening : cut.openings)
         if (std::abs(opening.border.value(q)) < 1e-6)
-          add(groups, !opening.paired ? opening.group : opening.group + (p.x() > 0 ? "_left" : "_right"), v);
+          group_named(groups, !opening.paired ? opening.group : opening.group + (p.x() > 0 ? "_left" : "_right"))
+              .push_back(v);
     }
 }
 
-void add_place_groups(const GarmentCut& cut, const Shape& shape, double edge, Groups& groups) {
+void add_place_groups(const GarmentCut& cut, const Shape& shape, double edge, NamedVertices& groups) {
   for (int v = 0; v < shape.x.rows(); ++v) {
     const Vec3 p = row(shape.x, v);
     const double reach = std::abs(p.x());
-    if (p.y() > 1.38 && reach > 0.05 && reach < 0.2) add(groups, p.x() > 0 ? "shoulder_left" : "shoulder_right", v);
-    if (cut.pinned != "waist" && std::abs(p.y() - 1.08) < edge) add(groups, "waist", v);
+    if (p.y() > 1.38 && reach > 0.05 && reach < 0.2)
+      group_named(groups, p.x() > 0 ? "shoulder_left" : "shoulder_right").push_back(v);
+    if (cut.pinned != "waist" && std::abs(p.y() - 1.08) < edge) group_named(groups, "waist").push_back(v);
   }
 }
 
-void add_trimmings(const GarmentCut& cut, const Field& field, double edge, Shape& shape, Groups& groups,
+void add_trimmings(const GarmentCut& cut, const Field& field, double edge, Shape& shape, NamedVertices& groups,
                    std::vector<Stitch>& stitches) {
   const int ground = static_cast<int>(shape.x.rows());
   for (const Opening& opening : cut.openings)
     if (opening.group == "neck" && cut.collar > 0)
       groups.emplace_back("collar", add_collar(shape, field.surface, opening.border, cut.collar, edge));
   for (const Pocket& pocket : cut.pockets)
-    for (const int v : add_pocket(shape, field.surface, pocket, edge, ground, stitches)) add(groups, "pocket", v);
+    for (const int v : add_pocket(shape, field.surface, pocket, edge, ground, stitches))
+      group_named(groups, "pocket").push_back(v);
 }
 
 }  // namespace

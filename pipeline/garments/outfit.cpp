@@ -89,20 +89,17 @@ Wardrobe read_wardrobe(const std::filesystem::path& path) {
 std::vector<Garment> kept_outfit(const std::filesystem::path& folder, const Outfit& outfit, const BodyModel& mannequin,
                                  double edge) {
   std::vector<Garment> garments;
-  GarmentOptions options;
-  options.edge = edge;
   for (std::size_t k = 0; k < outfit.garments.size(); ++k)
     garments.push_back(
-        kept_garment(folder, outfit.garments[k], mannequin, options, std::span(outfit.garments).first(k)));
+        kept_garment(folder, outfit.garments[k], mannequin, {.edge = edge}, std::span(outfit.garments).first(k)));
   return garments;
 }
 
 std::vector<Garment> kept_layers(const std::filesystem::path& folder, const Outfit& outfit, const BodyModel& mannequin,
                                  double edge) {
   std::vector<Garment> garments;
-  GarmentOptions options;
-  options.edge = edge;
-  for (const std::string& name : outfit.garments) garments.push_back(kept_garment(folder, name, mannequin, options));
+  for (const std::string& name : outfit.garments)
+    garments.push_back(kept_garment(folder, name, mannequin, {.edge = edge}));
   return garments;
 }
 

@@ -82,17 +82,16 @@ Vec3 rotation_vector(const Mat3& rotation) {
 Mat3 rotation_between(const Vec3& a, const Vec3& b) {
   const Vec3 from = a.normalized(), to = b.normalized();
   const double cosine = std::max(to.dot(from), -1.0);
+  Eigen::Quaterniond turn;
   if (cosine < -1 + opposite) {
     const double half = (1 + cosine) / 2;  // the square of the cosine of half the angle
-    Eigen::Quaterniond turn;
     turn.w() = std::sqrt(half);
     turn.vec() = std::sqrt(1 - half) * perpendicular(from, to);
-    return turn.toRotationMatrix();
+  } else {
+    const double twice = std::sqrt(2 * (1 + cosine));
+    turn.w() = twice / 2;
+    turn.vec() = from.cross(to) / twice;
   }
-  const double twice = std::sqrt(2 * (1 + cosine));
-  Eigen::Quaterniond turn;
-  turn.w() = twice / 2;
-  turn.vec() = from.cross(to) / twice;
   return turn.toRotationMatrix();
 }
 
