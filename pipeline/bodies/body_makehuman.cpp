@@ -1,8 +1,8 @@
 #include "pipeline/bodies/body_makehuman.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ constexpr double most_torn = 0.01;  // of the edges may join vertices of distant
 
 // The bones of a joint of SMPL, which is at the mean of their heads. For joints in pairs those of that side.
 std::vector<std::string> bones_of(const std::string& joint) {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> table = {
+  static const std::map<std::string, std::vector<std::string>> table = {
       {"pelvis", {"root"}},
       {"spine1", {"spine03"}},
       {"spine2", {"spine02"}},
@@ -41,8 +41,7 @@ std::vector<std::string> bones_of(const std::string& joint) {
       {"ankle", {"foot"}},
       {"foot", {"toe1-1", "toe2-1", "toe3-1", "toe4-1", "toe5-1"}}};
   const std::string part = joint.substr(joint.find('_') + 1);
-  std::vector<std::string> bones =
-      std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.first == part; })->second;
+  std::vector<std::string> bones = table.at(part);
   for (std::string& bone : bones)
     if (part != joint) bone += joint.starts_with("left") ? ".L" : ".R";
   return bones;

@@ -194,11 +194,8 @@ std::vector<MannequinJoint> mannequin_joints() {
 
 Form mannequin_form(const std::vector<MannequinLimb>& which, std::vector<Limb> others) {
   std::vector<Limb> limbs;
-  for (const MannequinLimb limb : which)
-    limbs.push_back(limb == MannequinLimb::torso  ? torso()
-                    : limb == MannequinLimb::head ? head()
-                    : limb == MannequinLimb::arm  ? arm()
-                                                  : leg());
+  constexpr std::array make{torso, head, arm, leg};  // in the order of MannequinLimb
+  for (const MannequinLimb limb : which) limbs.push_back(make[static_cast<std::size_t>(limb)]());
   std::move(others.begin(), others.end(), std::back_inserter(limbs));
   return make_form(std::move(limbs));
 }

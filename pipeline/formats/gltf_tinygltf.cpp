@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/read_file.hpp"
@@ -349,17 +348,14 @@ void join_vertices(const Document& file, const std::string& name, GltfScene& sce
   const Eigen::Index as_read = scene.mesh.x.rows();
   if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
   weld(scene.mesh, name);
-  leave_out_repeated(scene.mesh, name);
   const std::vector<int>& welded = scene.mesh.welded;
   std::vector<int> lowest(static_cast<std::size_t>(scene.mesh.x.rows()), -1);
   std::vector<Eigen::Triplet<double>> kept;
   std::vector<double> sum(lowest.size(), 0.0);
-  for (int v = 0; v < as_read; ++v) {
-    const int to = welded.empty() ? v : welded[v];
-    if (int& low = lowest[to]; low < 0) low = v;
-  }
+  for (int v = 0; v < as_read; ++v)
+    if (int& low = lowest[welded[v]]; low < 0) low = v;
   for (const Eigen::Triplet<double>& w : weights) {
-    const int to = welded.empty() ? w.row() : welded[w.row()];
+    const int to = welded[w.row()];
     if (lowest[to] != w.row()) continue;
     kept.emplace_back(to, w.col(), w.value());
     sum[to] += w.value();
@@ -392,10 +388,8 @@ GltfAnimation animation_of(const Document& file, const std::vector<int>& place, 
     track.values = file.numbers(sampler.output, *path == GltfPath::rotation ? 4 : 3, part + ", values");
     const Eigen::Index rows = track.times.size() * (track.interpolation == GltfInterpolation::cubic ? 3 : 1);
     if (track.times.size() == 0 || track.values.rows() != rows)
-      file.fail(
-          part,
-          "has " + std::to_string(track.values.rows()) + " values for " + std::to_string(track.times.size()) + " times",
-          "export it anew");
+      file.fail(part, fmt::format("has {} values for {} times", track.values.rows(), track.times.size()),
+                "export it anew");
     for (Eigen::Index i = 1; i < track.times.size(); ++i)
       if (!(track.times[i] > track.times[i - 1])) file.fail(part + ", times", "do not ascend", "export it anew");
     animation.tracks.push_back(std::move(track));

@@ -13,10 +13,6 @@ constexpr std::string_view extension = ".npy";
 
 std::string damaged_cure() { return "the file is damaged or incomplete; copy or download it again"; }
 
-struct CloseEntry {
-  void operator()(zip_file_t* file) const { zip_fclose(file); }
-};
-
 // The size that the archive claims for an entry, if its compressed bytes can give as much.
 std::size_t plausible_size(const zip_stat_t& entry, std::uintmax_t file_size, const NpyPlace& place) {
   constexpr std::uint64_t most_by_byte = 1032;  // most bytes that deflate packs into one
@@ -35,10 +31,7 @@ std::size_t plausible_size(const zip_stat_t& entry, std::uintmax_t file_size, co
 }  // namespace
 
 struct Npz::Archive {
-  struct Close {
-    void operator()(zip_t* archive) const { zip_discard(archive); }
-  };
-  std::unique_ptr<zip_t, Close> zip;
+  std::unique_ptr<zip_t, void (*)(zip_t*)> zip{nullptr, zip_discard};
   std::uintmax_t file_size = 0;
 };
 
@@ -87,7 +80,8 @@ std::string Npz::bytes(const std::string& name) const {
   if (zip_stat_index(zip, static_cast<zip_uint64_t>(index), 0, &entry) != 0)
     throw Error("cannot be found in the archive", at.text(), damaged_cure());
   const std::size_t size = plausible_size(entry, archive_->file_size, at);
-  const std::unique_ptr<zip_file_t, CloseEntry> file(zip_fopen_index(zip, static_cast<zip_uint64_t>(index), 0));
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
+      zip_fopen_index(zip, static_cast<zip_uint64_t>(index), 0), zip_fclose);
   if (!file) throw Error(fmt::format("cannot be read ({})", zip_strerror(zip)), at.text(), damaged_cure());
   std::string bytes(size, '\0');
   char beyond = 0;

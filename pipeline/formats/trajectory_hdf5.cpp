@@ -117,14 +117,12 @@ void TrajectoryWriter::Impl::make_datasets() {
 
 int TrajectoryWriter::Impl::code_of(const std::string& by_name) {
   const auto known = std::find(by_names.begin(), by_names.end(), by_name);
-  if (known == by_names.end()) {
-    std::string padded = by_name;
-    padded.resize(by_name_bytes, '\0');
-    file.write_rows(by.id(), by_type.id(), by_names.size(), 1, padded.data());
-    by_names.push_back(by_name);
-    return static_cast<int>(by_names.size()) - 1;
-  }
-  return static_cast<int>(known - by_names.begin());
+  if (known != by_names.end()) return static_cast<int>(known - by_names.begin());
+  std::string padded = by_name;
+  padded.resize(by_name_bytes, '\0');
+  file.write_rows(by.id(), by_type.id(), by_names.size(), 1, padded.data());
+  by_names.push_back(by_name);
+  return static_cast<int>(by_names.size()) - 1;
 }
 
 void TrajectoryWriter::Impl::set(const h5::Handle& flag, std::int64_t value) {

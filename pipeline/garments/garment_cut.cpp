@@ -44,106 +44,6 @@ Part skirt(const std::vector<std::array<double, 4>>& table, double exponent = 2)
   return {make_loft(1, 0.05, 0.03, exponent, sections), 0.03};
 }
 
-std::vector<GarmentCut> make_cuts() {
-  std::vector<GarmentCut> cuts;
-  const std::vector<MannequinLimb> upper{torso, head, arm, leg}, lower{torso, leg};
-  cuts.push_back({.name = "tshirt",
-                  .limbs = upper,
-                  .ease = {{0.85, 0.030}, {1.10, 0.030}, {1.30, 0.016}, {1.40, 0.006}},
-                  .sleeve_ease = {{0.20, 0.010}, {0.40, 0.022}},
-                  .openings = {below("hem", 0.84), neck(0.095, 0.095, 0, 0), arms_beyond("cuff", 0.37)}});
-  cuts.push_back({.name = "long_sleeved_shirt",
-                  .limbs = upper,
-                  .ease = {{0.85, 0.022}, {1.10, 0.022}, {1.30, 0.014}, {1.40, 0.006}},
-                  .sleeve_ease = {{0.20, 0.010}, {0.45, 0.016}, {0.66, 0.010}},
-                  .openings = {below("hem", 0.86), neck(0.09, 0.094, 0, 0), arms_beyond("cuff", 0.665)}});
-  cuts.push_back({.name = "tank_top",
-                  .fit = Fit::tight,
-                  .limbs = upper,
-                  .ease = {{0.90, 0.010}, {1.30, 0.009}, {1.40, 0.007}},
-                  .openings = {below("hem", 0.88), neck(0.105, 0.115, 0.02, 0.03), arms_beyond("armhole", 0.172)}});
-  cuts.push_back({.name = "trousers",
-                  .limbs = lower,
-                  .ease = {{0.10, 0.035}, {0.50, 0.030}, {0.80, 0.016}, {0.95, 0.010}, {1.05, 0.005}},
-                  .openings = {legs_below(0.10), above("waist", 1.05)},
-                  .pinned = "waist",
-                  .legs_apart = true});
-  cuts.push_back({.name = "wide_trousers",
-                  .limbs = lower,
-                  .ease = {{0.10, 0.060}, {0.50, 0.050}, {0.80, 0.022}, {0.95, 0.012}, {1.05, 0.005}},
-                  .openings = {legs_below(0.07), above("waist", 1.05)},
-                  .pinned = "waist",
-                  .legs_apart = true});
-  cuts.push_back({.name = "shorts",
-                  .limbs = lower,
-                  .ease = {{0.50, 0.040}, {0.80, 0.018}, {0.95, 0.010}, {1.05, 0.005}},
-                  .openings = {legs_below(0.54), above("waist", 1.05)},
-                  .pinned = "waist",
-                  .legs_apart = true});
-  cuts.push_back(
-      {.name = "skirt_short",
-       .limbs = lower,
-       .lofts = {skirt({{0.45, -0.170, 0.165, 0.265}, {0.90, -0.105, 0.105, 0.190}, {1.05, -0.05, 0.08, 0.12}})},
-       .ease = {{0.90, 0.012}, {1.05, 0.005}},
-       .openings = {below("hem", 0.50), above("waist", 1.05)},
-       .pinned = "waist"});
-  cuts.push_back(
-      {.name = "skirt_long",
-       .limbs = lower,
-       .lofts = {skirt({{0.05, -0.270, 0.270, 0.350}, {0.90, -0.105, 0.105, 0.190}, {1.05, -0.05, 0.08, 0.12}})},
-       .ease = {{0.90, 0.012}, {1.05, 0.005}},
-       .openings = {below("hem", 0.12), above("waist", 1.05)},
-       .pinned = "waist"});
-  cuts.push_back(
-      {.name = "skirt_flared",
-       .limbs = lower,
-       .lofts = {skirt({{0.40, -0.460, 0.460, 0.500}, {0.92, -0.115, 0.115, 0.190}, {1.05, -0.05, 0.08, 0.12}})},
-       .ease = {{0.90, 0.012}, {1.05, 0.005}},
-       .openings = {below("hem", 0.48), above("waist", 1.05)},
-       .pinned = "waist"});
-  cuts.push_back(
-      {.name = "dress_tight",
-       .fit = Fit::tight,
-       .limbs = upper,
-       .lofts = {skirt({{0.50, -0.115, 0.110, 0.210}, {0.85, -0.085, 0.085, 0.178}, {0.95, -0.06, 0.06, 0.12}})},
-       .ease = {{0.60, 0.010}, {0.90, 0.007}, {1.30, 0.009}, {1.40, 0.007}},
-       .openings = {below("hem", 0.56), neck(0.105, 0.115, 0.02, 0.035), arms_beyond("armhole", 0.172)}});
-  cuts.push_back(
-      {.name = "dress_flowing",
-       .limbs = upper,
-       .lofts = {skirt({{0.10, -0.420, 0.420, 0.480}, {0.92, -0.115, 0.115, 0.190}, {1.08, -0.05, 0.08, 0.12}})},
-       .ease = {{0.90, 0.012}, {1.15, 0.010}, {1.40, 0.006}},
-       .sleeve_ease = {{0.20, 0.010}, {0.30, 0.020}},
-       .openings = {below("hem", 0.20), neck(0.10, 0.11, 0.015, 0.02), arms_beyond("cuff", 0.26)}});
-  cuts.push_back(
-      {.name = "poncho",
-       .limbs = upper,
-       .lofts = {skirt({{0.70, -0.30, 0.30, 0.62}, {1.30, -0.17, 0.15, 0.60}, {1.405, -0.10, 0.07, 0.60}}, 3)},
-       .ease = {{1.30, 0.015}, {1.40, 0.008}},
-       .sleeve_ease = {{0.20, 0.012}, {0.50, 0.015}},
-       .openings = {below("hem", 0.85), neck(0.10, 0.10, 0, 0), beyond("side", 0.48)}});
-  cuts.push_back({.name = "open_shirt",
-                  .limbs = upper,
-                  .ease = {{0.85, 0.030}, {1.10, 0.028}, {1.30, 0.018}, {1.40, 0.008}},
-                  .sleeve_ease = {{0.20, 0.012}, {0.40, 0.022}},
-                  .openings = {below("hem", 0.82), neck(0.095, 0.098, 0, 0), arms_beyond("cuff", 0.40), front()},
-                  .collar = 0.05,
-                  .pockets = {{{0.085, 1.235}, {0.09, 0.10}}}});
-  cuts.push_back({.name = "vest",
-                  .limbs = upper,
-                  .ease = {{0.85, 0.040}, {1.10, 0.034}, {1.30, 0.022}, {1.40, 0.010}},
-                  .openings = {below("hem", 0.90), neck(0.10, 0.12, 0.02, 0.04), arms_beyond("armhole", 0.19), front()},
-                  .pockets = {{{0.09, 1.00}, {0.08, 0.08}}, {{-0.09, 1.00}, {0.08, 0.08}}}});
-  cuts.push_back({.name = "jacket",
-                  .limbs = upper,
-                  .ease = {{0.75, 0.045}, {1.10, 0.035}, {1.30, 0.025}, {1.40, 0.012}},
-                  .sleeve_ease = {{0.20, 0.018}, {0.45, 0.024}, {0.66, 0.018}},
-                  .openings = {below("hem", 0.80), neck(0.10, 0.102, 0, 0), arms_beyond("cuff", 0.66), front()},
-                  .collar = 0.07,
-                  .pockets = {{{0.10, 0.93}, {0.12, 0.12}}, {{-0.10, 0.93}, {0.12, 0.12}}}});
-  return cuts;
-}
-
 }  // namespace
 
 double at(const Profile& profile, double coordinate) {
@@ -162,7 +62,96 @@ double sagitta(double edge) {
 }
 
 const std::vector<GarmentCut>& garment_cuts() {
-  static const std::vector<GarmentCut> cuts = make_cuts();
+  static const std::vector<MannequinLimb> upper{torso, head, arm, leg}, lower{torso, leg};
+  static const std::vector<GarmentCut> cuts{
+      {.name = "tshirt",
+       .limbs = upper,
+       .ease = {{0.85, 0.030}, {1.10, 0.030}, {1.30, 0.016}, {1.40, 0.006}},
+       .sleeve_ease = {{0.20, 0.010}, {0.40, 0.022}},
+       .openings = {below("hem", 0.84), neck(0.095, 0.095, 0, 0), arms_beyond("cuff", 0.37)}},
+      {.name = "long_sleeved_shirt",
+       .limbs = upper,
+       .ease = {{0.85, 0.022}, {1.10, 0.022}, {1.30, 0.014}, {1.40, 0.006}},
+       .sleeve_ease = {{0.20, 0.010}, {0.45, 0.016}, {0.66, 0.010}},
+       .openings = {below("hem", 0.86), neck(0.09, 0.094, 0, 0), arms_beyond("cuff", 0.665)}},
+      {.name = "tank_top",
+       .fit = Fit::tight,
+       .limbs = upper,
+       .ease = {{0.90, 0.010}, {1.30, 0.009}, {1.40, 0.007}},
+       .openings = {below("hem", 0.88), neck(0.105, 0.115, 0.02, 0.03), arms_beyond("armhole", 0.172)}},
+      {.name = "trousers",
+       .limbs = lower,
+       .ease = {{0.10, 0.035}, {0.50, 0.030}, {0.80, 0.016}, {0.95, 0.010}, {1.05, 0.005}},
+       .openings = {legs_below(0.10), above("waist", 1.05)},
+       .pinned = "waist",
+       .legs_apart = true},
+      {.name = "wide_trousers",
+       .limbs = lower,
+       .ease = {{0.10, 0.060}, {0.50, 0.050}, {0.80, 0.022}, {0.95, 0.012}, {1.05, 0.005}},
+       .openings = {legs_below(0.07), above("waist", 1.05)},
+       .pinned = "waist",
+       .legs_apart = true},
+      {.name = "shorts",
+       .limbs = lower,
+       .ease = {{0.50, 0.040}, {0.80, 0.018}, {0.95, 0.010}, {1.05, 0.005}},
+       .openings = {legs_below(0.54), above("waist", 1.05)},
+       .pinned = "waist",
+       .legs_apart = true},
+      {.name = "skirt_short",
+       .limbs = lower,
+       .lofts = {skirt({{0.45, -0.170, 0.165, 0.265}, {0.90, -0.105, 0.105, 0.190}, {1.05, -0.05, 0.08, 0.12}})},
+       .ease = {{0.90, 0.012}, {1.05, 0.005}},
+       .openings = {below("hem", 0.50), above("waist", 1.05)},
+       .pinned = "waist"},
+      {.name = "skirt_long",
+       .limbs = lower,
+       .lofts = {skirt({{0.05, -0.270, 0.270, 0.350}, {0.90, -0.105, 0.105, 0.190}, {1.05, -0.05, 0.08, 0.12}})},
+       .ease = {{0.90, 0.012}, {1.05, 0.005}},
+       .openings = {below("hem", 0.12), above("waist", 1.05)},
+       .pinned = "waist"},
+      {.name = "skirt_flared",
+       .limbs = lower,
+       .lofts = {skirt({{0.40, -0.460, 0.460, 0.500}, {0.92, -0.115, 0.115, 0.190}, {1.05, -0.05, 0.08, 0.12}})},
+       .ease = {{0.90, 0.012}, {1.05, 0.005}},
+       .openings = {below("hem", 0.48), above("waist", 1.05)},
+       .pinned = "waist"},
+      {.name = "dress_tight",
+       .fit = Fit::tight,
+       .limbs = upper,
+       .lofts = {skirt({{0.50, -0.115, 0.110, 0.210}, {0.85, -0.085, 0.085, 0.178}, {0.95, -0.06, 0.06, 0.12}})},
+       .ease = {{0.60, 0.010}, {0.90, 0.007}, {1.30, 0.009}, {1.40, 0.007}},
+       .openings = {below("hem", 0.56), neck(0.105, 0.115, 0.02, 0.035), arms_beyond("armhole", 0.172)}},
+      {.name = "dress_flowing",
+       .limbs = upper,
+       .lofts = {skirt({{0.10, -0.420, 0.420, 0.480}, {0.92, -0.115, 0.115, 0.190}, {1.08, -0.05, 0.08, 0.12}})},
+       .ease = {{0.90, 0.012}, {1.15, 0.010}, {1.40, 0.006}},
+       .sleeve_ease = {{0.20, 0.010}, {0.30, 0.020}},
+       .openings = {below("hem", 0.20), neck(0.10, 0.11, 0.015, 0.02), arms_beyond("cuff", 0.26)}},
+      {.name = "poncho",
+       .limbs = upper,
+       .lofts = {skirt({{0.70, -0.30, 0.30, 0.62}, {1.30, -0.17, 0.15, 0.60}, {1.405, -0.10, 0.07, 0.60}}, 3)},
+       .ease = {{1.30, 0.015}, {1.40, 0.008}},
+       .sleeve_ease = {{0.20, 0.012}, {0.50, 0.015}},
+       .openings = {below("hem", 0.85), neck(0.10, 0.10, 0, 0), beyond("side", 0.48)}},
+      {.name = "open_shirt",
+       .limbs = upper,
+       .ease = {{0.85, 0.030}, {1.10, 0.028}, {1.30, 0.018}, {1.40, 0.008}},
+       .sleeve_ease = {{0.20, 0.012}, {0.40, 0.022}},
+       .openings = {below("hem", 0.82), neck(0.095, 0.098, 0, 0), arms_beyond("cuff", 0.40), front()},
+       .collar = 0.05,
+       .pockets = {{{0.085, 1.235}, {0.09, 0.10}}}},
+      {.name = "vest",
+       .limbs = upper,
+       .ease = {{0.85, 0.040}, {1.10, 0.034}, {1.30, 0.022}, {1.40, 0.010}},
+       .openings = {below("hem", 0.90), neck(0.10, 0.12, 0.02, 0.04), arms_beyond("armhole", 0.19), front()},
+       .pockets = {{{0.09, 1.00}, {0.08, 0.08}}, {{-0.09, 1.00}, {0.08, 0.08}}}},
+      {.name = "jacket",
+       .limbs = upper,
+       .ease = {{0.75, 0.045}, {1.10, 0.035}, {1.30, 0.025}, {1.40, 0.012}},
+       .sleeve_ease = {{0.20, 0.018}, {0.45, 0.024}, {0.66, 0.018}},
+       .openings = {below("hem", 0.80), neck(0.10, 0.102, 0, 0), arms_beyond("cuff", 0.66), front()},
+       .collar = 0.07,
+       .pockets = {{{0.10, 0.93}, {0.12, 0.12}}, {{-0.10, 0.93}, {0.12, 0.12}}}}};
   return cuts;
 }
 

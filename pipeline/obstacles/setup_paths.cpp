@@ -10,6 +10,23 @@ namespace selvedge {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// Whether other users may put files into the folder.
+bool is_shared(const fs::path& folder) {
+  struct stat found = {};
+  if (::stat(folder.c_str(), &found) != 0) return false;
+  return found.st_uid != ::geteuid() || (found.st_mode & S_IWOTH) != 0;
+}
+
+std::string variable(const Config& at, const std::string& name) {
+  if (const char* value = std::getenv(name.c_str()); value && *value) return value;
+  if (name == "SELVEDGE_DATA") return (fs::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data").lexically_normal();
+  at.fail("uses ${" + name + "}, which the environment does not set", "set it, or write the path out");
+}
+
+}  // namespace
+
 fs::path config_folder() {
   std::error_code problem;
   const fs::path program = fs::read_symlink("/proc/self/exe", problem);
@@ -42,17 +59,6 @@ fs::path files_folder(const Config& scene, const fs::path& file) {
   return place;
 }
 
-namespace {
-
-// Whether other users may put files into the folder.
-bool is_shared(const fs::path& folder) {
-  struct stat found = {};
-  if (::stat(folder.c_str(), &found) != 0) return false;
-  return found.st_uid != ::geteuid() || (found.st_mode & S_IWOTH) != 0;
-}
-
-}  // namespace
-
 fs::path cache_folder() {
   for (const auto& [name, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}})
     if (const char* value = std::getenv(name); value && *value) {
@@ -61,16 +67,6 @@ fs::path cache_folder() {
     }
   return {};
 }
-
-namespace {
-
-std::string variable(const Config& at, const std::string& name) {
-  if (const char* value = std::getenv(name.c_str()); value && *value) return value;
-  if (name == "SELVEDGE_DATA") return (fs::path(SELVEDGE_SOURCE_DIR) / ".." / "shared" / "data").lexically_normal();
-  at.fail("uses ${" + name + "}, which the environment does not set", "set it, or write the path out");
-}
-
-}  // namespace
 
 fs::path expanded_path(const Config& at, const std::string& text, const fs::path& folder) {
   std::string result = text;

@@ -95,6 +95,33 @@ std::vector<std::filesystem::path> sequence_files(const Config& section, const s
   return files;
 }
 
+// A cloth or an obstacle of a run: the obstacle's number, or the cloth's range of vertices and triangles.
+struct RecordedPart {
+  int obstacle = -1;
+  int first_vertex = 0, vertex_count = 0;
+  Triangles triangles;
+};
+
+RecordedPart recorded_part(const Config& section, const TrajectoryInfo& info) {
+  std::vector<std::string> names;
+  for (const TrajectoryInfo::Body& body : info.obstacles) names.push_back(body.name);
+  names.insert(names.end(), info.cloth_names.begin(), info.cloth_names.end());
+  const Config& part = section["part"];
+  const bool alone = info.obstacles.size() == 1 || names.size() == 1;
+  if (!part.given && !alone) section.fail("does not say which part of the run it is", "add part: " + joined(names));
+  const std::string name = part.given ? part.text() : names.front();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    part.fail("names the unknown part `" + name + "`", "parts: " + joined(names) + suggestion(name, names));
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  if (index < info.obstacles.size())
+    return {static_cast<int>(index), 0, info.obstacles[index].vertex_count, info.obstacles[index].triangles};
+  const std::size_t c = index - info.obstacles.size();
+  const int v = info.cloth_first_vertex[c], t = info.cloth_first_triangle[c];
+  return {-1, v, info.cloth_first_vertex[c + 1] - v,
+          info.triangles.middleRows(t, info.cloth_first_triangle[c + 1] - t).array() - v};
+}
+
 }  // namespace
 
 Points sequence_at(const Sequence& sequence, double time) {
@@ -131,37 +158,6 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
   warn_of_crossings(name, own_crossings(first.groups, sequence.frames[0], sequence.triangles, places), warnings);
   return sequence;
 }
-
-namespace {
-
-// A cloth or an obstacle of a run: the obstacle's number, or the cloth's range of vertices and triangles.
-struct RecordedPart {
-  int obstacle = -1;
-  int first_vertex = 0, vertex_count = 0;
-  Triangles triangles;
-};
-
-RecordedPart recorded_part(const Config& section, const TrajectoryInfo& info) {
-  std::vector<std::string> names;
-  for (const TrajectoryInfo::Body& body : info.obstacles) names.push_back(body.name);
-  names.insert(names.end(), info.cloth_names.begin(), info.cloth_names.end());
-  const Config& part = section["part"];
-  const bool alone = info.obstacles.size() == 1 || names.size() == 1;
-  if (!part.given && !alone) section.fail("does not say which part of the run it is", "add part: " + joined(names));
-  const std::string name = part.given ? part.text() : names.front();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end())
-    part.fail("names the unknown part `" + name + "`", "parts: " + joined(names) + suggestion(name, names));
-  const auto index = static_cast<std::size_t>(found - names.begin());
-  if (index < info.obstacles.size())
-    return {static_cast<int>(index), 0, info.obstacles[index].vertex_count, info.obstacles[index].triangles};
-  const std::size_t c = index - info.obstacles.size();
-  const int v = info.cloth_first_vertex[c], t = info.cloth_first_triangle[c];
-  return {-1, v, info.cloth_first_vertex[c + 1] - v,
-          info.triangles.middleRows(t, info.cloth_first_triangle[c + 1] - t).array() - v};
-}
-
-}  // namespace
 
 Sequence read_recorded(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   const std::filesystem::path file = existing_path(section["file"], folder);
