@@ -21,7 +21,7 @@ bool is_right(const std::string& joint) { return joint.starts_with("right_"); }
 
 const Section& joints_section() {
   static const Section table = [] {
-    Section all{"joints", "SMPL's joints; of the right side those that are not where the left ones are.", "", {}, {}};
+    Section all{"joints", "SMPL's joints; of the right side those that are not where the left ones are."};
     for (const std::string& name : smpl_joint_names(smpl::joints)) {
       const Key key = vector(name, Unit::length, "", is_right(name) ? "left out: the left one, mirrored" : "");
       all.keys.push_back(is_right(name) ? key : needed(key));
@@ -34,8 +34,6 @@ const Section& joints_section() {
 const Section& file_section() {
   static const Section table{"joints of a body",
                              "The whole file.",
-                             "",
-                             {},
                              {text("description", "for people"),
                               needed(section(joints_section(), "", "where the joints are, in the pose of the mesh"))}};
   return table;

@@ -28,8 +28,6 @@ const Section& setting_section() {
   static const Section table{
       "setting",
       "",
-      "",
-      {},
       {needed(text("name", "Name of the row.")), text("stepper", "Stepper, in place of the scene's."),
        text("weights", "File in `weights_folder`. A row whose file is not there is left out, and says so."),
        texts("set", "`key=value` overrides of every scene.")}};

@@ -55,9 +55,9 @@ struct RetiredKey {
 
 struct Section {
   std::string name, about;
-  std::string shorthand;                 // the key that a plain value stands for
-  std::vector<std::string> exactly_one;  // of these keys one must be given
-  std::vector<Key> keys;
+  std::vector<Key> keys = {};
+  std::string shorthand = {};                 // the key that a plain value stands for
+  std::vector<std::string> exactly_one = {};  // of these keys one must be given
   std::vector<RetiredKey> retired = {};
 };
 

@@ -30,12 +30,11 @@ Key interpolation_key() {
 const Section& mesh_section() {
   static const Section table{"mesh",
                              "An OBJ or PLY file. The names of its `o` and `g` lines become vertex groups.",
-                             "file",
-                             {},
                              {needed(path("file", "The OBJ or PLY file.")), unit_key(),
                               flag("weld", false,
                                    "Merges vertices that lie at one place, within a millionth of the mesh's size. The "
-                                   "vertices that remain are renumbered in their order.")}};
+                                   "vertices that remain are renumbered in their order.")},
+                             "file"};
   return table;
 }
 
@@ -45,8 +44,6 @@ const Section& keyframe_section() {
   static const Section table{
       "keyframe",
       "The pose at one time. A rotation may exceed 360 degrees.",
-      "",
-      {},
       {needed(number("time", Unit::time, any, "", "Time of the keyframe.")),
        vector("translate", Unit::length, "[0, 0, 0]", "Displacement from the initial placement."),
        vector("rotate", Unit::angle, "[0, 0, 0]",
@@ -60,8 +57,6 @@ const Section& motion_section() {
   static const Section table{
       "motion",
       "Rigid motion given by keyframes. The pose is held before the first and after the last keyframe.",
-      "",
-      {},
       {needed(sections("keyframes", keyframe_section(), "", "Poses at ascending times.")), interpolation_key(),
        vector("center", Unit::length, "",
               "Centre of rotation. Default: the middle of the bounding box of what moves.")}};

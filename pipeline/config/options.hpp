@@ -100,8 +100,8 @@ struct Options {
 
   Options(std::string name, std::string about, OptionRows<Struct> all, std::string shorthand = {},
           std::vector<std::string> exactly_one = {}, std::vector<RetiredKey> retired = {})
-      : rows(std::move(all)), section{std::move(name),        std::move(about), std::move(shorthand),
-                                      std::move(exactly_one), keys_of(rows),    std::move(retired)} {}
+      : rows(std::move(all)), section{std::move(name),      std::move(about),       keys_of(rows),
+                                      std::move(shorthand), std::move(exactly_one), std::move(retired)} {}
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;
 

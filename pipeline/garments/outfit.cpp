@@ -14,8 +14,6 @@ using namespace table;
 const Section& garment_section() {
   static const Section table{"garment",
                              "",
-                             "",
-                             {},
                              {needed(text("name", "of a garment by code")),
                               needed(word("split", {"training", "validation"}, "", "what it is for"))}};
   return table;
@@ -24,8 +22,6 @@ const Section& garment_section() {
 const Section& outfit_section() {
   static const Section table{"outfit",
                              "",
-                             "",
-                             {},
                              {needed(text("name", "")), needed(texts("garments", "from the body outward")),
                               needed(number("edge", Unit::length, positive, "", "of the full form")),
                               needed(number("small_edge", Unit::length, positive, "", "of the form for quick runs"))}};
@@ -36,8 +32,6 @@ const Section& file_section() {
   static const Section table{
       "wardrobe",
       "The whole file.",
-      "",
-      {},
       {text("description", "for people"), needed(sections("garments", garment_section(), "", "all garments by code")),
        needed(sections("outfits", outfit_section(), "", "what is worn together"))}};
   return table;

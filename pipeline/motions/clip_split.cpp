@@ -14,8 +14,6 @@ const Section& entry_section() {
   static const Section table{
       "clip",
       "",
-      "",
-      {},
       {needed(text("name", "of a procedural clip")), needed(integer("frames", at_least_one, "", "at 30 a second")),
        needed(word("split", {"training", "validation"}, "", "what it is for"))}};
   return table;
@@ -25,8 +23,6 @@ const Section& file_section() {
   static const Section table{
       "clips",
       "The whole file.",
-      "",
-      {},
       {text("description", "for people"), needed(sections("clips", entry_section(), "", "all clips"))}};
   return table;
 }

@@ -55,15 +55,13 @@ namespace table {
 
 const Section& material_section() {
   static const Section table{
-      "material",
-      "A material given by name, by values, or by a name and values that replace the named material's.",
-      "name",
-      {},
+      "material", "A material given by name, by values, or by a name and values that replace the named material's.",
       std::vector<Key>{text("name",
                             "Name of a material file without its extension. It is searched in `materials/` beside the "
                             "scene file, beside the scene's folder, and in the program's own folder."),
                        path("file", "Path of a material file.")} +
-          keys_of(material_options())};
+          keys_of(material_options()),
+      "name"};
   return table;
 }
 
@@ -73,8 +71,6 @@ const Section& rest_section() {
   static const Section table{
       "rest",
       "The shape in which a cloth has no stress.",
-      "from",
-      {},
       {word("from", {"initial", "uv", "mesh"}, "initial",
             "`initial` takes the shape as made or read. `uv` takes the texture coordinates as a flat pattern. `mesh` "
             "takes the shape of `file`."),
@@ -82,15 +78,14 @@ const Section& rest_section() {
        path("file", "Mesh file for `from: mesh`, with the same vertices and faces as the cloth."), unit_key(),
        flag("flat", true,
             "True: rest angles are zero. False: they are the angles of the rest shape. All cloths of a scene need the "
-            "same value.")}};
+            "same value.")},
+      "from"};
   return table;
 }
 
 const Section& box_region_section() {
   static const Section table{"box_region",
                              "A box with edges along the axes.",
-                             "",
-                             {},
                              {needed(vector("min", Unit::length, "", "Lowest corner.")),
                               needed(vector("max", Unit::length, "", "Highest corner."))}};
   return table;
@@ -100,14 +95,14 @@ const Section& pin_section() {
   static const Section table{
       "pin",
       "Vertices that are held in place or moved as prescribed. A vertex that two pins select obeys the first.",
-      "",
-      {"vertices", "box", "group"},
       selection_keys() +
           std::vector<Key>{section(motion_section(), "", "Motion of the vertices. Default: they are held in place."),
                            with_words(text("follow",
                                            "`body`: the vertices of a garment move with the skin of the body, soft "
                                            "tissue included. It replaces `motion`."),
-                                      {"body"})}};
+                                      {"body"})},
+      "",
+      {"vertices", "box", "group"}};
   return table;
 }
 
@@ -116,12 +111,11 @@ const Section& copies_section() {
       "copies",
       "Copies of the cloth, named name_0, name_1, ... Each copy is the one before, rotated about the middle of its "
       "bounding box and then moved.",
-      "count",
-      {},
       {needed(integer("count", {.low = 1, .high = most_parts}, "", "Number of cloths in total.")),
        vector("translate", Unit::length, "[0, 0, 0]", "Displacement from one copy to the next."),
        vector("rotate", Unit::angle, "[0, 0, 0]",
-              "Rotation from one copy to the next: the direction is the axis, the length is the angle.")}};
+              "Rotation from one copy to the next: the direction is the axis, the length is the angle.")},
+      "count"};
   return table;
 }
 
@@ -138,8 +132,6 @@ const Section& cloth_section() {
   static const Section table{
       "cloth",
       "Exactly one of rectangle, disc, tube, ribbon, tshirt, mesh and garment gives the shape of the cloth.",
-      "",
-      {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh", "garment"},
       std::vector<Key>{text("name", "Name of the cloth. Default: cloth0, cloth1, ...")} + sheet_keys() +
           std::vector<Key>{section(mesh_section(), "", "A mesh file."),
                            section(garment_options().section, "", "A garment that a body of the scene wears.")} +
@@ -152,7 +144,9 @@ const Section& cloth_section() {
               section(rest_section(), "{}", "Rest shape."),
               sections("seams", seam_section(), "[]",
                        "Seams that join vertices of this cloth, as between the panels of a garment."),
-              sections("pins", pin_section(), "[]", "Vertices that are held or moved.")}};
+              sections("pins", pin_section(), "[]", "Vertices that are held or moved.")},
+      "",
+      {"rectangle", "disc", "tube", "ribbon", "tshirt", "mesh", "garment"}};
   return table;
 }
 

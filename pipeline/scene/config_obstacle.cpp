@@ -9,19 +9,13 @@ namespace {
 const Section& plane_section() {
   static const Section table{"plane",
                              "A horizontal sheet with its normal up.",
-                             "",
-                             {},
                              {pair("size", Unit::length, "[4, 4]", "Lengths along x and z."), edge_key("0.25")}};
   return table;
 }
 
 const Section& sphere_section() {
   static const Section table{
-      "sphere",
-      "",
-      "",
-      {},
-      {number("radius", Unit::length, positive, "0.3", "Radius of the sphere."), edge_key("0.03")}};
+      "sphere", "", {number("radius", Unit::length, positive, "0.3", "Radius of the sphere."), edge_key("0.03")}};
   return table;
 }
 
@@ -29,8 +23,6 @@ const Section& capsule_section() {
   static const Section table{
       "capsule",
       "A cylinder along y with hemispherical ends.",
-      "",
-      {},
       {number("radius", Unit::length, positive, "0.1", "Radius of the cylinder and of its ends."),
        number("length", Unit::length, not_negative, "0.5", "Length of the cylinder without its ends."),
        edge_key("0.03")}};
@@ -39,13 +31,13 @@ const Section& capsule_section() {
 
 const Section& box_section() {
   static const Section table{
-      "box", "", "", {}, {vector("size", Unit::length, "[1, 1, 1]", "Lengths along x, y and z."), edge_key("0.1")}};
+      "box", "", {vector("size", Unit::length, "[1, 1, 1]", "Lengths along x, y and z."), edge_key("0.1")}};
   return table;
 }
 
 const Section& profile_point_section() {
   static const Section table{
-      "profile_point", "", "at", {}, {needed(pair("at", Unit::length, "", "Distance from the axis and height.", any))}};
+      "profile_point", "", {needed(pair("at", Unit::length, "", "Distance from the axis and height.", any))}, "at"};
   return table;
 }
 
@@ -53,8 +45,6 @@ const Section& revolution_section() {
   static const Section table{
       "revolution",
       "A surface of revolution about the y axis: a funnel, a bowl, a spike.",
-      "",
-      {},
       {needed(sections("profile", profile_point_section(), "",
                        "Points of the profile, each [distance from the axis, height].")),
        flag("closed", false,
@@ -74,8 +64,6 @@ const Section& sequence_section() {
       "sequence",
       "One mesh for each frame, all with the same faces. Positions between frames are "
       "interpolated linearly, and the first and the last frame are held.",
-      "",
-      {"pattern", "files", "cache"},
       {path("pattern", "Path of the mesh files, with one %d or %0Nd for the frame number."),
        integer("first", not_negative, "0", "First frame number of `pattern`."),
        integer("count", at_least_one, "", "Number of frames, missing ones included. Default: as many as there are."),
@@ -85,30 +73,28 @@ const Section& sequence_section() {
        number("fps", Unit::rate, positive, "30",
               "Frames a second of the sequence. Default: those of a .mdd file, else 30, with a "
               "warning."),
-       start_key(), unit_key()}};
+       start_key(), unit_key()},
+      "",
+      {"pattern", "files", "cache"}};
   return table;
 }
 
 const Section& trajectory_section() {
   static const Section table{"trajectory",
                              "A cloth or an obstacle of an earlier run.",
-                             "file",
-                             {},
                              {needed(path("file", "HDF5 file of that run.")),
                               text("part",
                                    "Name of the cloth or obstacle in that run. Default: the only obstacle or, without "
                                    "obstacles, the only cloth."),
-                              start_key(), unit_key()}};
+                              start_key(), unit_key()},
+                             "file"};
   return table;
 }
 
 const Section& bvh_joints_section() {
   static const Section table = [] {
-    Section joints{"joints",
-                   "The clip's names of SMPL's joints. Joints that are left out are found by the names of common rigs.",
-                   "",
-                   {},
-                   {}};
+    Section joints{
+        "joints", "The clip's names of SMPL's joints. Joints that are left out are found by the names of common rigs."};
     for (const std::string& name : smpl_joint_names(smpl::joints)) joints.keys.push_back(text(name, ""));
     return joints;
   }();
@@ -121,8 +107,6 @@ const Section& body_section() {
   static const Section table{
       "body",
       "A skinned body, animated by its skeleton.",
-      "model",
-      {},
       {named("model", "mannequin",
              "`mannequin`, which the program makes, or a file: SMPL, SMPL-H or SMPL-X as .npz, any rigged body as .h5, "
              ".glb or .gltf."),
@@ -149,7 +133,8 @@ const Section& body_section() {
            number("room", Unit::length, not_negative, "auto",
                   "Gap that soft tissue keeps open for cloth between parts of a moving body, before `scale`. `auto`: 1 "
                   "cm, and 5 mm more for each garment beyond the first. 0: the body may pass through itself."),
-           {"auto"})}};
+           {"auto"})},
+      "model"};
   return table;
 }
 
@@ -158,8 +143,6 @@ const Section& obstacle_section() {
       "obstacle",
       "Exactly one of plane, sphere, capsule, box, revolution, mesh, sequence, trajectory and body defines the "
       "obstacle. Shapes are centred at the origin before they are placed.",
-      "",
-      {"plane", "sphere", "capsule", "box", "revolution", "mesh", "sequence", "trajectory", "body"},
       std::vector<Key>{
           text("name", "Name of the obstacle. Default: obstacle0, obstacle1, ..."),
           section(plane_section(), "", "A horizontal sheet."), section(sphere_section(), "", "A sphere."),
@@ -169,7 +152,9 @@ const Section& obstacle_section() {
           section(trajectory_section(), "", "A cloth or an obstacle of an earlier run."),
           section(body_section(), "", "A skinned body.")} +
           placement_keys() +
-          std::vector<Key>{section(motion_section(), "", "Rigid motion. Default: the obstacle does not move.")}};
+          std::vector<Key>{section(motion_section(), "", "Rigid motion. Default: the obstacle does not move.")},
+      "",
+      {"plane", "sphere", "capsule", "box", "revolution", "mesh", "sequence", "trajectory", "body"}};
   return table;
 }
 

@@ -9,8 +9,6 @@ using namespace table;
 const Section& wind_key_section() {
   static const Section table{"wind_key",
                              "Velocity of the air at one time.",
-                             "",
-                             {},
                              {needed(number("time", Unit::time, any, "", "Time of the keyframe.")),
                               needed(vector("velocity", Unit::speed, "", "Velocity of the air."))}};
   return table;
@@ -54,8 +52,6 @@ const Section& scene_section() {
   static const Section table{
       "scene",
       "The whole file.",
-      "",
-      {},
       {text("description", "Free text for readers."),
        text("folder",
             "Folder that relative paths refer to, itself relative to this file's folder. Default: this file's folder. "
@@ -87,8 +83,8 @@ std::shared_ptr<const SceneTable> scene_table(const Kinds& kinds) {
 }
 
 const Section& material_file_section() {
-  static const Section table{
-      "material_file", "", "", {}, std::vector<Key>{text("description", "for people")} + keys_of(material_options())};
+  static const Section table{"material_file", "",
+                             std::vector<Key>{text("description", "for people")} + keys_of(material_options())};
   return table;
 }
 

@@ -15,9 +15,9 @@ const Section& seam_side_section() {
   static const Section table{
       "seam_side",
       "Vertices of the cloth in the order in which they are listed. Those of a box or a group are ordered by index.",
+      selection_keys(),
       "",
-      {"vertices", "box", "group"},
-      selection_keys()};
+      {"vertices", "box", "group"}};
   return table;
 }
 
@@ -28,11 +28,11 @@ const Section& seam_section() {
       "seam",
       "Vertices of the cloth that are sewn together in pairs. Each pair becomes one vertex, and pairs with a common "
       "vertex become one vertex together. Triangles keep the rest shape that they have on their panels.",
-      "",
-      {"from", "file"},
       {renamed(section(seam_side_section(), "", "One side of the seam."), "from"),
        renamed(section(seam_side_section(), "", "The other side of the seam."), "to"), pair_key(),
-       path("file", "Text file with one pair of vertex indices, from 0, on each line. It replaces `from` and `to`.")}};
+       path("file", "Text file with one pair of vertex indices, from 0, on each line. It replaces `from` and `to`.")},
+      "",
+      {"from", "file"}};
   return table;
 }
 

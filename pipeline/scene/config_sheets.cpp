@@ -40,8 +40,6 @@ const Section& rectangle_section() {
       "rectangle",
       "A rectangular sheet: horizontal, normal up, centred at the origin. Groups: left, right, top (-z), bottom, "
       "boundary, center, top_left, top_right, bottom_left, bottom_right.",
-      "",
-      {},
       std::vector<Key>{pair("size", Unit::length, "[1, 1]", "Lengths along x and z."),
                        integers("resolution", {.low = 2}, 2, "Number of vertices along x and z, in place of `edge`."),
                        edge_key("0.02"),
@@ -53,15 +51,13 @@ const Section& rectangle_section() {
 }
 
 const Section& disc_section() {
-  static const Section table{"disc",
-                             "A round sheet: horizontal, normal up, centred at the origin. Groups: boundary, center.",
-                             "",
-                             {},
-                             std::vector<Key>{number("radius", Unit::length, positive, "0.5", "Radius of the disc."),
-                                              integers("resolution", {.low = 1}, 1,
-                                                       "Number of vertex rings round the centre, in place of `edge`."),
-                                              edge_key("0.02")} +
-                                 keys_of(sheet_options())};
+  static const Section table{
+      "disc", "A round sheet: horizontal, normal up, centred at the origin. Groups: boundary, center.",
+      std::vector<Key>{
+          number("radius", Unit::length, positive, "0.5", "Radius of the disc."),
+          integers("resolution", {.low = 1}, 1, "Number of vertex rings round the centre, in place of `edge`."),
+          edge_key("0.02")} +
+          keys_of(sheet_options())};
   return table;
 }
 
@@ -69,8 +65,6 @@ const Section& tube_section() {
   static const Section table{
       "tube",
       "An open cylinder about the y axis, centred at the origin, normals outward. Groups: top, bottom, boundary.",
-      "",
-      {},
       std::vector<Key>{number("radius", Unit::length, positive, "0.2", "Radius of the tube."),
                        number("height", Unit::length, positive, "1", "Length along y."),
                        integers("resolution", {.low = 2}, 2,
@@ -81,14 +75,12 @@ const Section& tube_section() {
 }
 
 const Section& line_point_section() {
-  static const Section table{
-      "line_point",
-      "A point of a ribbon's centre line.",
-      "at",
-      {},
-      {needed(vector("at", Unit::length, "", "Position of the middle of the ribbon.")),
-       vector("normal", Unit::none, "",
-              "Direction that the ribbon faces at this point. Default: the ribbon's `normal`.")}};
+  static const Section table{"line_point",
+                             "A point of a ribbon's centre line.",
+                             {needed(vector("at", Unit::length, "", "Position of the middle of the ribbon.")),
+                              vector("normal", Unit::none, "",
+                                     "Direction that the ribbon faces at this point. Default: the ribbon's `normal`.")},
+                             "at"};
   return table;
 }
 
@@ -98,8 +90,6 @@ const Section& ribbon_section() {
       "A straight strip of cloth, laid along a smooth curve through points (centripetal Catmull-Rom). Its rest shape "
       "is flat, so it starts strained where it cannot follow the curve without stretching. Groups: start, end, middle, "
       "boundary.",
-      "",
-      {},
       std::vector<Key>{
           needed(
               sections("line", line_point_section(), "", "Points of the centre line, at least two, each [x, y, z].")),

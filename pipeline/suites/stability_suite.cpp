@@ -30,20 +30,17 @@ const Section& run_section() {
   static const Section table{
       "run",
       "",
-      "name",
-      {},
       {needed(text("name", "What differs, for readers.")), texts("set", "`key=value` overrides of the scene."),
        flag("short", false, "True: the run is in the short form too."),
        word("fault", weight_faults(), "",
-            "What is wrong with the weights, for steppers with a network. `huge`: the network returns 1e6.")}};
+            "What is wrong with the weights, for steppers with a network. `huge`: the network returns 1e6.")},
+      "name"};
   return table;
 }
 
 const Section& case_section() {
   static const Section table{"case",
                              "",
-                             "",
-                             {},
                              {needed(text("name", "Short name of the case.")), text("about", "One line for readers."),
                               needed(path("scene", "Scene file, relative to the suite's folder.")),
                               texts("set", "`key=value` overrides of all its runs."),
@@ -55,8 +52,6 @@ const Section& suite_section() {
   static const Section table{
       "suite",
       "The whole file.",
-      "",
-      {},
       {text("description", "Free text for readers."), section(limits_options().section, "{}", ""),
        needed(sections("cases", case_section(), "", "Cases: at least one."))}};
   return table;

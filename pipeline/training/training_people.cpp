@@ -164,13 +164,12 @@ const Section& person_clip_section() {
         "person_clip",
         "A clip of a person, with the keys that `body` of a scene has for it. What is left out is as the "
         "person's `body` says.",
-        "clip",
-        {},
         {text("name", "Name of the clip. Default: the file as it is named here, without its extension."),
          weight_key("the clip"),
          needed(text("clip",
                      "A procedural clip, or a .bvh, AMASS .npz, .glb or .gltf file, relative to this file. `*` "
-                     "stands for any characters, folders included: all such files are clips."))}};
+                     "stands for any characters, folders included: all such files are clips."))},
+        "clip"};
     for (const Key& key : body_section().keys)
       if (std::ranges::find(body_keys_of_clips, key.name) != body_keys_of_clips.end()) made.keys.push_back(key);
     return made;
@@ -181,8 +180,6 @@ const Section& person_clip_section() {
 const Section& wear_section() {
   static const Section table{"wear",
                              "A garment, or an outfit of them.",
-                             "",
-                             {},
                              {text("name", "Name of it. Default: those of its garments."), weight_key("it"),
                               needed(sections("garments", garment_options().section, "",
                                               "What is worn, from the body outward, as `garment` of a scene."))}};
@@ -193,8 +190,6 @@ const Section& person_section() {
   static const Section table{
       "person",
       "One who wears garments and moves. Every garment is seen with every clip.",
-      "",
-      {},
       {text("name", "Name of the person. Default: person0, person1, ..."), weight_key("the person"),
        needed(section(body_section(), "", "The body, as `body` of a scene. A `clip` here is the only one.")),
        sections("clips", person_clip_section(), "[]", "How it moves. Default: the `clip` of the body."),
@@ -241,8 +236,7 @@ void settle_people(const PathsOfFile& paths, std::vector<Config>& people) {
 
 void settle_split(const fs::path& folder, const Config& at, SplitOptions& split) {
   if (split.file.empty()) return;
-  static const Section lists{
-      "split", "", "", {}, {text("description", ""), texts("validation", ""), texts("test", "")}};
+  static const Section lists{"split", "", {text("description", ""), texts("validation", ""), texts("test", "")}};
   const Config config = read_config(existing_path(at, split.file, folder), lists);
   const auto add = [&](const char* key, std::vector<std::string>& names) {
     names.insert(names.end(), config[key].words.begin(), config[key].words.end());

@@ -49,7 +49,7 @@ class CountingStepper final : public Stepper {
 
 const Section& counting_section() {
   static const Section section{
-      "counting", "", "", {}, {table::number("speed", Unit::speed, table::positive, "1", "of what sinks")}};
+      "counting", "", {table::number("speed", Unit::speed, table::positive, "1", "of what sinks")}};
   return section;
 }
 
