@@ -10,20 +10,30 @@ namespace {
 
 constexpr double length = 0.1, density = 0.2, g = 9.81;  // of every strip here: [m], [kg/m2], [m/s2]
 
-const ValidationParameter thickness_parameter{"thickness",
-                                              "0.01",
-                                              "0.01",
-                                              "of the plate over the length; sets how little it stretches",
-                                              {.low = 0, .low_in = false},
-                                              {}};
+const ValidationParameter thickness_parameter{
+    "thickness", "0.01", "0.01", "of the plate over the length; sets how little it stretches", table::positive};
 
 ValidationParameter gamma_parameter(const std::string& otherwise, const std::string& brief) {
-  return {"gamma", otherwise, brief, "rho g L^3 over the bending stiffness", {.low = 0, .low_in = false}, {}};
+  return {"gamma", otherwise, brief, "rho g L^3 over the bending stiffness", table::positive};
 }
 
 Material plate(const ValidationValues& values, double gamma, double nu) {
   return plate_material(density, density * g * length * length * length / gamma, values.number("thickness") * length,
                         nu);
+}
+
+// A strip of the run's width and mesh, clamped where it begins.
+Strip clamped(const ValidationValues& values, const Material& material, const Vec3& along, const Vec3& across) {
+  return make_strip_scene(strip_shape(values, length, values.number("width") * length), material, along, across,
+                          "clamp");
+}
+
+// How far the tip is aside, over the length, where a strip rests that started aside, at its tip by `push`.
+double aside_at_rest(const Strip& strip, int along, double push) {
+  Points start = strip.start;
+  for (int v = 0; v < start.rows(); ++v)
+    if (start(v, along) > 0) start(v, 2) += push * start(v, along) * start(v, along) / length;
+  return std::abs(mean_of(settled(strip.scene, start, Vec3(0, -g, 0)), strip.tip).z()) / length;
 }
 
 std::vector<Measured> droop(const ValidationValues& values, BendingModel model) {
@@ -32,9 +42,7 @@ std::vector<Measured> droop(const ValidationValues& values, BendingModel model) 
   material.bending_model = model;
   // The papers' weight is a quarter of the one that its inventors gave the hinge.
   if (model == BendingModel::hinge) material.bending *= 4;
-  StripShape shape = strip_shape(values, length, values.number("width") * length);
-  shape.clamp = true;
-  const Strip strip = make_strip_scene(shape, material, Vec3::UnitX(), -Vec3::UnitZ(), "clamp");
+  const Strip strip = clamped(values, material, Vec3::UnitX(), -Vec3::UnitZ());
   const Points x = settled(strip.scene, strip.start, Vec3(0, -g, 0));
   const Vec3 tip = mean_of(x, strip.tip);
   const Cantilever exact = elastica(gamma);
@@ -50,14 +58,7 @@ std::vector<Measured> hinge(const ValidationValues& values) { return droop(value
 // Pushed aside at the start; it rests upright or it does not.
 std::vector<Measured> greenhill(const ValidationValues& values) {
   const double gamma = values.number("gamma");
-  StripShape shape = strip_shape(values, length, values.number("width") * length);
-  shape.clamp = true;
-  const Strip strip = make_strip_scene(shape, plate(values, gamma, 0), Vec3::UnitY(), Vec3::UnitX(), "clamp");
-  Points start = strip.start;
-  for (int v = 0; v < start.rows(); ++v)
-    if (start(v, 1) > 0) start(v, 2) += 0.05 * start(v, 1) * start(v, 1) / length;
-  const Points x = settled(strip.scene, start, Vec3(0, -g, 0));
-  const double aside = std::abs(mean_of(x, strip.tip).z()) / length;
+  const double aside = aside_at_rest(clamped(values, plate(values, gamma, 0), Vec3::UnitY(), Vec3::UnitX()), 1, 0.05);
   const bool stands = gamma < greenhill_gamma;
   return {{stands ? "tip aside (stands)" : "tip aside (falls)", aside, 0, stands ? Judged::at_most : Judged::at_least,
            stands ? 0.01 : 0.1}};
@@ -66,25 +67,10 @@ std::vector<Measured> greenhill(const ValidationValues& values) {
 // Gravity in the strip's plane; it stays there or it tips over.
 std::vector<Measured> lateral(const ValidationValues& values) {
   const double nu = values.number("nu"), gamma = values.number("load") * lateral_buckling_gamma(nu);
-  StripShape shape = strip_shape(values, length, values.number("width") * length);
-  shape.clamp = true;
-  const Strip strip = make_strip_scene(shape, plate(values, gamma, nu), Vec3::UnitX(), Vec3::UnitY(), "clamp");
-  Points start = strip.start;
-  for (int v = 0; v < start.rows(); ++v)
-    if (start(v, 0) > 0) start(v, 2) += 0.02 * start(v, 0) * start(v, 0) / length;
-  const Points x = settled(strip.scene, start, Vec3(0, -g, 0));
-  const double aside = std::abs(mean_of(x, strip.tip).z()) / length;
+  const double aside = aside_at_rest(clamped(values, plate(values, gamma, nu), Vec3::UnitX(), Vec3::UnitY()), 0, 0.02);
   const bool stays = values.number("load") < 1;
   return {{stays ? "tip aside (stays)" : "tip aside (tips over)", aside, 0, stays ? Judged::at_most : Judged::at_least,
            stays ? 0.005 : 0.05}};
-}
-
-ValidationParameter width_parameter(const std::string& value, const std::string& about) {
-  return {"width", value, value, about, {.low = 0, .low_in = false}, {}};
-}
-
-ValidationParameter resolution(const std::string& otherwise, const std::string& brief) {
-  return {"resolution", otherwise, brief, "elements along the strip", {.low = 4, .high = 400}, {}};
 }
 
 const char* const all_meshes = "one_diagonal,alternating,unstructured";
@@ -92,33 +78,30 @@ const char* const all_meshes = "one_diagonal,alternating,unstructured";
 }  // namespace
 
 std::vector<ValidationCase> bending_cases() {
-  const std::string eighths = "0.2666667";  // 8 elements of 30
-  const auto strip = [](const ValidationParameter& fineness, const std::string& angles, const std::string& meshes,
-                        std::vector<ValidationParameter> first) {
-    const std::vector<ValidationParameter> common = strip_parameters(fineness, meshes, angles);
-    first.insert(first.end(), common.begin(), common.end());
-    first.push_back(thickness_parameter);
-    return first;
+  const auto strip = [](std::vector<ValidationParameter> own, const ValidationParameter& fineness,
+                        const std::string& meshes, const std::string& angles) {
+    std::vector<ValidationParameter> all = strip_parameters(std::move(own), fineness, meshes, angles);
+    all.push_back(thickness_parameter);
+    return all;
   };
-  const ValidationParameter nu{"nu", "0,0.3,0.5", "0.3", "Poisson's ratio", {.low = 0, .high = 0.9}, {}};
-  const ValidationParameter load{"load", "0.85,1.15", "0.85,1.15", "over the critical one", {.low = 0, .low_in = false},
-                                 {}};
-  return {{"cantilever", "a level strip, clamped at one end, bends under its own weight",
-           strip(resolution("30,60", "30"), "0,45,135", all_meshes,
-                 {gamma_parameter("0.1,1,10,100", "10"), width_parameter(eighths, "of the strip over its length")}),
-           cantilever},
-          {"hinge", "the same by dihedral angles, for comparison",
-           strip(resolution("30", "30"), "0,45,135", all_meshes,
-                 {gamma_parameter("1,10", "10"), width_parameter(eighths, "of the strip over its length")}),
-           hinge},
-          {"greenhill", "an upright strip, clamped at its foot, stands or falls",
-           strip(resolution("30", "30"), "0,45", all_meshes,
-                 {gamma_parameter("7,8.7", "7,8.7"), width_parameter(eighths, "of the strip over its length")}),
-           greenhill},
-          {"lateral", "a strip on its edge, clamped at one end, stays upright or tips over",
-           strip(resolution("60", "40"), "0,45", "alternating,unstructured",
-                 {load, nu, width_parameter("0.1", "of the strip over its length")}),
-           lateral}};
+  const ValidationParameter nu{"nu", "0,0.3,0.5", "0.3", "Poisson's ratio", {.low = 0, .high = 0.9}};
+  const ValidationParameter load{"load", "0.85,1.15", "0.85,1.15", "over the critical one", table::positive};
+  return {
+      {"cantilever", "a level strip, clamped at one end, bends under its own weight",
+       strip({gamma_parameter("0.1,1,10,100", "10"), width_parameter()}, resolution_parameter("30,60", "30"),
+             all_meshes, "0,45,135"),
+       cantilever},
+      {"hinge", "the same by dihedral angles, for comparison",
+       strip({gamma_parameter("1,10", "10"), width_parameter()}, resolution_parameter("30", "30"), all_meshes,
+             "0,45,135"),
+       hinge},
+      {"greenhill", "an upright strip, clamped at its foot, stands or falls",
+       strip({gamma_parameter("7,8.7", "7,8.7"), width_parameter()}, resolution_parameter("30", "30"), all_meshes,
+             "0,45"),
+       greenhill},
+      {"lateral", "a strip on its edge, clamped at one end, stays upright or tips over",
+       strip({load, nu, width_parameter("0.1")}, resolution_parameter("60", "40"), "alternating,unstructured", "0,45"),
+       lateral}};
 }
 
 }  // namespace selvedge

@@ -14,8 +14,8 @@ namespace selvedge {
 // between: those of the full and of the short form.
 struct ValidationParameter {
   std::string name, otherwise, brief, about;
-  Range range;
-  std::vector<std::string> choices;  // empty: a number
+  Range range = {};
+  std::vector<std::string> choices = {};  // empty: a number
 };
 
 // The parameters of one run.

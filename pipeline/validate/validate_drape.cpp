@@ -40,12 +40,8 @@ std::vector<Measured> drape(const ValidationValues& values) {
   const int rings = values.integer("resolution");
   const double length = 0.01 * values.number("bending_length"), nu = values.number("nu");
   const Mesh mesh = make_disc(radius, rings, {read_triangulation(values.word("mesh")), 1});
-  Material material;
-  material.density = density;
-  material.bending = density * g * std::pow(length, 3);
-  material.lame_mu = stretch / (2 * (1 + nu));
-  material.lame_lambda = stretch * nu / (1 - nu * nu);
-  Scene scene = flat_cloth("disc", mesh, mesh.x, material);
+  Scene scene =
+      flat_cloth("disc", mesh, mesh.x, cloth_material(density, stretch, nu, density * g * std::pow(length, 3)));
   Points start = mesh.x;
   for (int v = 0; v < start.rows(); ++v) {
     const double r = std::hypot(start(v, 0), start(v, 2)), beyond = std::max(0.0, r - support);
@@ -62,20 +58,11 @@ std::vector<Measured> drape(const ValidationValues& values) {
 std::vector<ValidationCase> drape_cases() {
   return {{"drape",
            "a held disc drapes less the stiffer it is for its weight",
-           {{"mesh",
-             "alternating",
-             "alternating",
-             "how the cloth is cut",
-             {},
-             {"one_diagonal", "alternating", "unstructured"}},
-            {"resolution", "20", "10", "rings of vertices", {.low = 10, .high = 200}, {}},
-            {"nu", "0.3", "0.3", "Poisson's ratio", {.low = 0, .high = 0.9}, {}},
-            {"bending_length",
-             "1,1.5,2,2.5,3,3.9",
-             "1.5,2.5,3.9",
-             "cube root of B / (rho g) [cm], ascending",
-             {.low = 0, .low_in = false},
-             {}}},
+           {mesh_parameter("alternating"),
+            {"resolution", "20", "10", "rings of vertices", {.low = 10, .high = 200}},
+            {"nu", "0.3", "0.3", "Poisson's ratio", {.low = 0, .high = 0.9}},
+            {"bending_length", "1,1.5,2,2.5,3,3.9", "1.5,2.5,3.9", "cube root of B / (rho g) [cm], ascending",
+             table::positive}},
            drape}};
 }
 

@@ -2,9 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-
-#include "collision/geometry/error.hpp"
+#include "physics/scene/make_scene.hpp"
 #include "physics/solve/assembly.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/validate/validate_strip.hpp"
@@ -16,44 +14,27 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double g = 9.81, frame = 1.0 / 30;  // [m/s2], [s]
 
-void add_obstacle(Scene& scene, const std::string& name, const Points& x, const Triangles& triangles, State& state) {
-  scene.obstacles.push_back({name, make_surface(static_cast<int>(x.rows()), triangles), false});
-  state.obstacles.push_back(x);
-}
-
-void advance(Stepper& stepper, const Drive& drive, State& state) {
-  State next;
-  if (stepper.step(state, drive, frame, next).status != StepStatus::accepted)
-    throw Error(fmt::format("the step to {:.3f} s was rejected", state.time + frame), "validate", "report it");
-  std::swap(state, next);
-}
-
 // A sheet laid on a slope along x at the distance that contact keeps.
 std::vector<Measured> incline(const ValidationValues& values) {
   const double slope = values.number("slope") * pi / 180, mu = values.number("mu");
   const Vec3 down(std::cos(slope), -std::sin(slope), 0), normal(std::sin(slope), std::cos(slope), 0);
-  StripShape shape = strip_shape(values, 0.2, 0.2);
-  Strip sheet = make_strip_scene(shape, Material{}, down, Vec3(0, 0, -1), "");
+  Strip sheet = make_strip_scene(strip_shape(values, 0.2, 0.2), Material{}, down, Vec3(0, 0, -1), "");
   sheet.scene.contact.friction = mu;
-  State state;
-  state.x = sheet.start.rowwise() + sheet.scene.contact.thickness * normal.transpose();
-  state.v = Points::Zero(state.x.rows(), 3);
   Points plane(4, 3);
   Triangles faces(2, 3);
   for (int k = 0; k < 4; ++k)
     plane.row(k) = ((k == 1 || k == 2 ? 12.0 : -1.0) * down + Vec3(0, 0, k < 2 ? 1.0 : -1.2)).transpose();
   faces << 0, 1, 2, 0, 2, 3;
-  add_obstacle(sheet.scene, "slope", plane, faces, state);
-  Drive drive;
-  drive.pins.resize(0, 3);
-  drive.obstacles = {plane};
-  drive.acceleration = Vec3(0, -g, 0);
+  add_obstacle(sheet.scene, static_cast<int>(plane.rows()), faces, false, "slope");
+  State state =
+      first_state(sheet.scene, sheet.start.rowwise() + sheet.scene.contact.thickness * normal.transpose(), {plane});
+  const Drive drive = at_rest(sheet.scene, state);
   const auto stepper = make_recovering_conventional_stepper(sheet.scene);
   const Vec3 start = state.x.colwise().mean();
   constexpr int settle = 10, frames = 40;
   double before = 0;
   for (int n = 1; n <= frames; ++n) {
-    advance(*stepper, drive, state);
+    advance(*stepper, drive, frame, state);
     if (n == settle) before = Vec3(state.v.colwise().mean()).dot(down);
   }
   if (mu >= std::tan(slope))
@@ -85,17 +66,14 @@ double pull(const Elastic& elastic, const Points& x, const std::vector<int>& ver
 std::vector<Measured> capstan(const ValidationValues& values) {
   const double mu = values.number("mu"), wrap = values.number("wrap") * pi / 180;
   const double r = bar_radius + Scene{}.contact.thickness, length = 2 * leg + wrap * r, width = 0.02;
-  StripShape shape = strip_shape(values, length, width);
-  Strip belt = make_strip_scene(shape, Material{}, Vec3::UnitX(), -Vec3::UnitZ(), "root");
+  Strip belt = make_strip_scene(strip_shape(values, length, width), Material{}, Vec3::UnitX(), -Vec3::UnitZ(), "root");
   Scene& scene = belt.scene;
   scene.pins.insert(scene.pins.end(), belt.tip.begin(), belt.tip.end());
   std::sort(scene.pins.begin(), scene.pins.end());
   scene.contact.friction = mu;
-  State state;
-  state.x.resize(belt.start.rows(), 3);
-  for (int v = 0; v < state.x.rows(); ++v)
-    state.x.row(v) = on_belt(belt.start(v, 0) - leg, wrap, r, belt.start(v, 2) + width / 2).transpose();
-  state.v = Points::Zero(state.x.rows(), 3);
+  Points start(belt.start.rows(), 3);
+  for (int v = 0; v < start.rows(); ++v)
+    start.row(v) = on_belt(belt.start(v, 0) - leg, wrap, r, belt.start(v, 2) + width / 2).transpose();
   constexpr int sides = 90;
   Points bar(2 * sides, 3);
   Triangles faces(2 * sides, 3);
@@ -107,13 +85,13 @@ std::vector<Measured> capstan(const ValidationValues& values) {
     faces.row(2 * i) << a, b, a + 1;
     faces.row(2 * i + 1) << a + 1, b, b + 1;
   }
-  add_obstacle(scene, "bar", bar, faces, state);
+  add_obstacle(scene, static_cast<int>(bar.rows()), faces, false, "bar");
   // Both ends tighten the belt for ten frames, then the far end pulls it round.
   const Vec3 near = (on_belt(-leg, wrap, r, 0) - on_belt(0, wrap, r, 0)).normalized(),
              far = (on_belt(wrap * r + leg, wrap, r, 0) - on_belt(wrap * r, wrap, r, 0)).normalized();
   const Elastic elastic = make_elastic(scene);
   const auto stepper = make_recovering_conventional_stepper(scene);
-  const Points start = state.x;
+  State state = first_state(scene, start, {bar});
   Drive drive;
   drive.obstacles = {bar};
   constexpr int tighten = 10, frames = 45, last = 10;
@@ -127,7 +105,7 @@ std::vector<Measured> capstan(const ValidationValues& values) {
       const Vec3 moved = at_root ? Vec3((tightened - slid) * near) : Vec3((tightened + slid) * far);
       drive.pins.row(static_cast<Eigen::Index>(p)) = start.row(v) + moved.transpose();
     }
-    advance(*stepper, drive, state);
+    advance(*stepper, drive, frame, state);
     if (n <= frames - last) continue;
     slack += pull(elastic, state.x, belt.root, near) / last;
     tight += pull(elastic, state.x, belt.tip, far) / last;
@@ -138,23 +116,15 @@ std::vector<Measured> capstan(const ValidationValues& values) {
 }  // namespace
 
 std::vector<ValidationCase> friction_cases() {
-  const Range not_negative{.low = 0};
-  const auto with = [](std::vector<ValidationParameter> first, const std::string& resolution) {
-    for (const ValidationParameter& parameter : strip_parameters(
-             {"resolution", resolution, resolution, "elements along the cloth", {.low = 4, .high = 400}, {}},
-             "one_diagonal", "0"))
-      first.push_back(parameter);
-    return first;
-  };
   return {{"incline", "a sheet on a slope sticks or slides",
-           with({{"slope", "15,30", "15,30", "of the plane [degrees]", {.low = 0, .high = 80}, {}},
-                 {"mu", "0.3", "0.3", "coefficient of friction", not_negative, {}}},
-                "8"),
+           strip_parameters({{"slope", "15,30", "15,30", "of the plane [degrees]", {.low = 0, .high = 80}},
+                             {"mu", "0.3", "0.3", "coefficient of friction", table::not_negative}},
+                            resolution_parameter("8", "8", "cloth"), "one_diagonal", "0"),
            incline},
           {"capstan", "a belt is pulled round a bar",
-           with({{"mu", "0.1,0.3,0.5", "0.3", "coefficient of friction", not_negative, {}},
-                 {"wrap", "90,180", "180", "angle round the bar [degrees]", {.low = 10, .high = 180}, {}}},
-                "80"),
+           strip_parameters({{"mu", "0.1,0.3,0.5", "0.3", "coefficient of friction", table::not_negative},
+                             {"wrap", "90,180", "180", "angle round the bar [degrees]", {.low = 10, .high = 180}}},
+                            resolution_parameter("80", "80", "cloth"), "one_diagonal", "0"),
            capstan}};
 }
 

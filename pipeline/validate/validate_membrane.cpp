@@ -10,22 +10,13 @@ namespace {
 
 constexpr double density = 0.2, g = 9.81;  // [kg/m2], [m/s2]
 
-Material membrane(double stretch, double nu, double bending) {
-  Material material;
-  material.density = density;
-  material.lame_mu = stretch / (2 * (1 + nu));
-  material.lame_lambda = stretch * nu / (1 - nu * nu);
-  material.bending = bending;
-  return material;
-}
-
 // Laid on the arc of a circle between its ends, which are pinned.
 std::vector<Measured> catenary(const ValidationValues& values) {
   const double ratio = values.number("ratio"), distance = 1, length = ratio * distance;
   const double bending = density * g * std::pow(length, 3) / values.number("gamma");
-  StripShape shape = strip_shape(values, length, values.number("width") * length);
-  Strip strip =
-      make_strip_scene(shape, membrane(1e4 * density * g * length, 0, bending), Vec3::UnitX(), -Vec3::UnitZ(), "root");
+  Strip strip = make_strip_scene(strip_shape(values, length, values.number("width") * length),
+                                 cloth_material(density, 1e4 * density * g * length, 0, bending), Vec3::UnitX(),
+                                 -Vec3::UnitZ(), "root");
   strip.scene.pins.insert(strip.scene.pins.end(), strip.tip.begin(), strip.tip.end());
   std::sort(strip.scene.pins.begin(), strip.scene.pins.end());
   double low = 1e-6, high = 3.14;  // half the arc's angle: sin(a) / a = distance / length
@@ -46,9 +37,9 @@ std::vector<Measured> catenary(const ValidationValues& values) {
 std::vector<Measured> hanging(const ValidationValues& values) {
   constexpr double length = 1;
   const double stretch = density * g * length / values.number("strain");
-  const Strip strip =
-      make_strip_scene(strip_shape(values, length, values.number("width") * length),
-                       membrane(stretch, values.number("nu"), 1e-5), -Vec3::UnitY(), Vec3::UnitX(), "root");
+  const Strip strip = make_strip_scene(strip_shape(values, length, values.number("width") * length),
+                                       cloth_material(density, stretch, values.number("nu"), 1e-5), -Vec3::UnitY(),
+                                       Vec3::UnitX(), "root");
   const Points x = settled(strip.scene, strip.start, Vec3(0, -g, 0));
   // Least squares of u = fit[0] s + fit[1] s^2.
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -69,23 +60,12 @@ std::vector<Measured> hanging(const ValidationValues& values) {
 std::vector<Measured> stretch(const ValidationValues& values) {
   constexpr double length = 1, modulus = 1000;
   const double l = values.number("stretch"), nu = values.number("nu"), width = values.number("width") * length;
-  const Strip strip = make_strip_scene(strip_shape(values, length, width), membrane(modulus, nu, 1e-5), Vec3::UnitX(),
-                                       -Vec3::UnitZ(), "");
+  const Strip strip = make_strip_scene(strip_shape(values, length, width), cloth_material(density, modulus, nu, 1e-5),
+                                       Vec3::UnitX(), -Vec3::UnitZ(), "");
   const double force = 0.5 * l * modulus * (l * l - 1) * width;
-  const std::vector<double> at_root = line_shares(strip.start, strip.root),
-                            at_tip = line_shares(strip.start, strip.tip);
-  AddedTerm load;
-  load.value = [&](const Points& x) {
-    double work = 0;
-    for (std::size_t k = 0; k < at_tip.size(); ++k) work += force * at_tip[k] * x(strip.tip[k], 0);
-    for (std::size_t k = 0; k < at_root.size(); ++k) work -= force * at_root[k] * x(strip.root[k], 0);
-    return -work;
-  };
-  load.add_derivatives = [&](const Points&, Points& gradient, std::vector<ContactBlock>&) {
-    for (std::size_t k = 0; k < at_tip.size(); ++k) gradient(strip.tip[k], 0) -= force * at_tip[k];
-    for (std::size_t k = 0; k < at_root.size(); ++k) gradient(strip.root[k], 0) += force * at_root[k];
-  };
-  const Points x = settled(strip.scene, strip.start, load, force);
+  VertexForces forces = line_forces(strip.start, strip.tip, force);
+  for (const auto& one : line_forces(strip.start, strip.root, -force)) forces.push_back(one);
+  const Points x = settled(strip.scene, strip.start, dead_load(forces, 0), force);
   const Eigen::RowVector3d extent = x.colwise().maxCoeff() - x.colwise().minCoeff();
   return {{"stretch", extent.x() / length, l, Judged::relative, 0.02},
           {"lateral stretch", extent.z() / width, std::sqrt(1 - nu * (l * l - 1)), Judged::relative, 0.02}};
@@ -94,28 +74,23 @@ std::vector<Measured> stretch(const ValidationValues& values) {
 }  // namespace
 
 std::vector<ValidationCase> membrane_cases() {
-  const Range positive{.low = 0, .low_in = false}, poisson{.low = 0, .high = 0.9};
-  const ValidationParameter fineness{"resolution", "30", "30", "elements along the strip", {.low = 4, .high = 400}, {}};
-  const ValidationParameter width{"width", "0.2666667", "0.2666667", "of the strip over its length", positive, {}};
-  const auto with = [&](std::vector<ValidationParameter> first) {
-    const std::vector<ValidationParameter> common = strip_parameters(fineness, "alternating,unstructured", "0,45");
-    first.push_back(width);
-    first.insert(first.end(), common.begin(), common.end());
-    return first;
+  const Range poisson{.low = 0, .high = 0.9};
+  const auto with = [](std::vector<ValidationParameter> own) {
+    own.push_back(width_parameter());
+    return strip_parameters(std::move(own), resolution_parameter("30", "30"), "alternating,unstructured", "0,45");
   };
-  return {
-      {"catenary", "a strip of little stiffness hangs between its pinned ends",
-       with({{"ratio", "1.05,1.5,3", "1.5", "length over the distance of the ends", {.low = 1, .low_in = false}, {}},
-             {"gamma", "1e6", "1e6", "rho g L^3 over the bending stiffness", positive, {}}}),
-       catenary},
-      {"hanging", "a strip hangs by its upper end",
-       with({{"strain", "0.001", "0.001", "at the top", positive, {}},
-             {"nu", "0", "0", "Poisson's ratio", poisson, {}}}),
-       hanging},
-      {"stretch", "St. Venant-Kirchhoff, pulled along",
-       with({{"stretch", "1.05,1.3", "1.3", "wanted", {.low = 1, .high = 2, .low_in = false}, {}},
-             {"nu", "0,0.3", "0.3", "Poisson's ratio", poisson, {}}}),
-       stretch}};
+  return {{"catenary", "a strip of little stiffness hangs between its pinned ends",
+           with({{"ratio", "1.05,1.5,3", "1.5", "length over the distance of the ends", {.low = 1, .low_in = false}},
+                 {"gamma", "1e6", "1e6", "rho g L^3 over the bending stiffness", table::positive}}),
+           catenary},
+          {"hanging", "a strip hangs by its upper end",
+           with({{"strain", "0.001", "0.001", "at the top", table::positive},
+                 {"nu", "0", "0", "Poisson's ratio", poisson}}),
+           hanging},
+          {"stretch", "St. Venant-Kirchhoff, pulled along",
+           with({{"stretch", "1.05,1.3", "1.3", "wanted", {.low = 1, .high = 2, .low_in = false}},
+                 {"nu", "0,0.3", "0.3", "Poisson's ratio", poisson}}),
+           stretch}};
 }
 
 }  // namespace selvedge

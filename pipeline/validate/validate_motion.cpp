@@ -55,9 +55,8 @@ double measured_frequency(const Strip& strip, double expected, int mode, int ste
 
 std::vector<Measured> vibration(const ValidationValues& values) {
   const double bending = std::pow(first_frequency / frequency(1, 1), 2);
-  StripShape shape = strip_shape(values, length, values.number("width") * length);
-  shape.clamp = true;
-  const Strip strip = make_strip_scene(shape, plate_material(density, bending, values.number("thickness") * length, 0),
+  const Strip strip = make_strip_scene(strip_shape(values, length, values.number("width") * length),
+                                       plate_material(density, bending, values.number("thickness") * length, 0),
                                        Vec3::UnitX(), -Vec3::UnitZ(), "clamp");
   const int steps = values.integer("steps");
   const double f1 = measured_frequency(strip, frequency(bending, 1), 1, steps);
@@ -69,16 +68,12 @@ std::vector<Measured> vibration(const ValidationValues& values) {
 }  // namespace
 
 std::vector<ValidationCase> motion_cases() {
-  const Range positive{.low = 0, .low_in = false};
-  std::vector<ValidationParameter> parameters{
-      {"steps", "240", "240", "a period", {.low = 20}, {}},
-      {"thickness", "0.01", "0.01", "of the plate over the length", positive, {}},
-      {"width", "0.2666667", "0.2666667", "of the strip over its length", positive, {}}};
-  for (const ValidationParameter& parameter :
-       strip_parameters({"resolution", "30", "30", "elements along the strip", {.low = 4, .high = 400}, {}},
-                        "one_diagonal,unstructured", "0,45"))
-    parameters.push_back(parameter);
-  return {{"vibration", "the first two frequencies of a clamped strip", parameters, vibration}};
+  return {{"vibration", "the first two frequencies of a clamped strip",
+           strip_parameters({{"steps", "240", "240", "a period", {.low = 20}},
+                             {"thickness", "0.01", "0.01", "of the plate over the length", table::positive},
+                             width_parameter()},
+                            resolution_parameter("30", "30"), "one_diagonal,unstructured", "0,45"),
+           vibration}};
 }
 
 }  // namespace selvedge

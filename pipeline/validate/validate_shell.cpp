@@ -16,19 +16,9 @@ Material steel() { return plate_material(1, youngs_modulus * std::pow(thickness,
 
 std::vector<Measured> end_shear(const ValidationValues& values) {
   constexpr double length = 10, force = 4;
-  StripShape shape = strip_shape(values, length, width);
-  shape.clamp = true;
-  const Strip strip = make_strip_scene(shape, steel(), Vec3::UnitX(), -Vec3::UnitZ(), "clamp");
-  const std::vector<double> shares = line_shares(strip.start, strip.tip);
-  AddedTerm load;
-  load.value = [&](const Points& x) {
-    double work = 0;
-    for (std::size_t k = 0; k < strip.tip.size(); ++k) work += force * shares[k] * x(strip.tip[k], 1);
-    return -work;
-  };
-  load.add_derivatives = [&](const Points&, Points& gradient, std::vector<ContactBlock>&) {
-    for (std::size_t k = 0; k < strip.tip.size(); ++k) gradient(strip.tip[k], 1) -= force * shares[k];
-  };
+  const Strip strip =
+      make_strip_scene(strip_shape(values, length, width), steel(), Vec3::UnitX(), -Vec3::UnitZ(), "clamp");
+  const AddedTerm load = dead_load(line_forces(strip.start, strip.tip, force), 1);
   const Points x = settled(strip.scene, strip.start, load, force);
   const Vec3 moved = mean_of(x, strip.tip) - mean_of(strip.start, strip.tip);
   return {{"W of the tip", moved.y(), 6.698, Judged::relative, 0.02},
@@ -55,7 +45,7 @@ struct Couple {
 std::vector<Measured> end_moment(const ValidationValues& values) {
   constexpr double length = 12, full = 50 * pi / 3;
   StripShape shape = strip_shape(values, length, width);
-  shape.clamp = shape.grip = true;
+  shape.grip = true;
   const Strip strip = make_strip_scene(shape, steel(), Vec3::UnitX(), -Vec3::UnitZ(), "clamp");
   Couple couple{strip};
   AddedTerm load;
@@ -96,16 +86,13 @@ std::vector<Measured> end_moment(const ValidationValues& values) {
 }  // namespace
 
 std::vector<ValidationCase> shell_cases() {
-  const ValidationParameter fineness{
-      "resolution", "30,60", "30", "elements along the strip", {.low = 4, .high = 400}, {}};
-  const ValidationParameter coarse{"resolution", "40", "40", fineness.about, fineness.range, {}};
-  const std::string meshes = "one_diagonal,alternating,unstructured";
-  std::vector<ValidationParameter> moment = strip_parameters(coarse, "alternating,unstructured", "0,45");
-  moment.insert(moment.begin(),
-                {"turn", "1", "1", "part of a whole circle", {.low = 0, .high = 1, .low_in = false}, {}});
-  return {{"end_shear", "a strip clamped at one end, a force at the other", strip_parameters(fineness, meshes, "0,45"),
+  return {{"end_shear", "a strip clamped at one end, a force at the other",
+           strip_parameters({}, resolution_parameter("30,60", "30"), "one_diagonal,alternating,unstructured", "0,45"),
            end_shear},
-          {"end_moment", "a strip clamped at one end, rolled up by a moment at the other", moment, end_moment}};
+          {"end_moment", "a strip clamped at one end, rolled up by a moment at the other",
+           strip_parameters({{"turn", "1", "1", "part of a whole circle", {.low = 0, .high = 1, .low_in = false}}},
+                            resolution_parameter("40", "40"), "alternating,unstructured", "0,45"),
+           end_moment}};
 }
 
 }  // namespace selvedge

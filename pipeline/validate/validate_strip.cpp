@@ -13,6 +13,8 @@
 namespace selvedge {
 namespace {
 
+std::string first_of(const std::string& list) { return list.substr(0, list.find(',')); }
+
 const std::vector<int>& group(const Mesh& mesh, const std::string& name) {
   return std::find_if(mesh.groups.begin(), mesh.groups.end(), [&name](const auto& g) { return g.first == name; })
       ->second;
@@ -29,12 +31,26 @@ Points settled(const Scene& scene, const Points& start, const StaticLoad& load) 
 
 }  // namespace
 
-std::vector<ValidationParameter> strip_parameters(const ValidationParameter& resolution, const std::string& meshes,
+ValidationParameter resolution_parameter(const std::string& otherwise, const std::string& brief,
+                                         const std::string& noun) {
+  return {"resolution", otherwise, brief, "elements along the " + noun, {.low = 4, .high = 400}};
+}
+
+ValidationParameter width_parameter(const std::string& value) {
+  return {"width", value, value, "of the strip over its length", table::positive};
+}
+
+ValidationParameter mesh_parameter(const std::string& meshes) {
+  return {
+      "mesh", meshes, first_of(meshes), "how the cloth is cut", {}, {"one_diagonal", "alternating", "unstructured"}};
+}
+
+std::vector<ValidationParameter> strip_parameters(std::vector<ValidationParameter> own,
+                                                  const ValidationParameter& resolution, const std::string& meshes,
                                                   const std::string& angles) {
-  const auto first = [](const std::string& list) { return list.substr(0, list.find(',')); };
-  return {{"mesh", meshes, first(meshes), "how the cloth is cut", {}, {"one_diagonal", "alternating", "unstructured"}},
-          {"angle", angles, first(angles), "of the strip to the mesh [degrees]", {}, {}},
-          resolution};
+  const ValidationParameter angle{"angle", angles, first_of(angles), "of the strip to the mesh [degrees]"};
+  own.insert(own.end(), {mesh_parameter(meshes), angle, resolution});
+  return own;
 }
 
 Triangulation read_triangulation(const std::string& word) {
@@ -43,14 +59,17 @@ Triangulation read_triangulation(const std::string& word) {
                                  : Triangulation::unstructured;
 }
 
-Material plate_material(double density, double bending, double thickness, double nu) {
+Material cloth_material(double density, double stretch, double nu, double bending) {
   Material material;
   material.density = density;
   material.bending = bending;
-  const double stretch = 12 * (1 - nu * nu) * bending / (thickness * thickness);  // E h
   material.lame_mu = stretch / (2 * (1 + nu));
   material.lame_lambda = stretch * nu / (1 - nu * nu);
   return material;
+}
+
+Material plate_material(double density, double bending, double thickness, double nu) {
+  return cloth_material(density, 12 * (1 - nu * nu) * bending / (thickness * thickness), nu, bending);
 }
 
 StripShape strip_shape(const ValidationValues& values, double length, double width) {
@@ -74,8 +93,9 @@ Scene flat_cloth(const std::string& name, const Mesh& mesh, const Points& rest, 
   return scene;
 }
 
-Strip make_strip_scene(const StripShape& shape, const Material& material, const Vec3& along, const Vec3& across,
+Strip make_strip_scene(StripShape shape, const Material& material, const Vec3& along, const Vec3& across,
                        const std::string& pinned) {
+  shape.clamp = pinned == "clamp";
   const Mesh mesh = make_strip(shape);
   Strip strip;
   Eigen::Matrix<double, 2, 3> frame;
@@ -86,7 +106,6 @@ Strip make_strip_scene(const StripShape& shape, const Material& material, const 
   strip.root = group(mesh, "root");
   strip.tip = group(mesh, "tip");
   strip.grip = group(mesh, "grip");
-  strip.side = group(mesh, "side");
   return strip;
 }
 
@@ -104,7 +123,14 @@ Points settled(const Scene& scene, const Points& start, const AddedTerm& added, 
   return settled(scene, start, StaticLoad{Vec3::Zero(), &added, size});
 }
 
-std::vector<double> line_shares(const Points& x, const std::vector<int>& vertices) {
+void advance(Stepper& stepper, const Drive& drive, double dt, State& state) {
+  State next;
+  if (stepper.step(state, drive, dt, next).status != StepStatus::accepted)
+    throw Error(fmt::format("the step to {:.3f} s was rejected", state.time + dt), "validate", "report it");
+  std::swap(state, next);
+}
+
+VertexForces line_forces(const Points& x, const std::vector<int>& vertices, double force) {
   const std::size_t count = vertices.size();
   const Vec3 origin = row(x, vertices[0]);
   Vec3 far = origin;
@@ -122,7 +148,22 @@ std::vector<double> line_shares(const Points& x, const std::vector<int>& vertice
     shares[order[k]] += half;
     shares[order[k + 1]] += half;
   }
-  return shares;
+  VertexForces forces;
+  for (std::size_t k = 0; k < count; ++k) forces.emplace_back(vertices[k], force * shares[k]);
+  return forces;
+}
+
+AddedTerm dead_load(const VertexForces& forces, int axis) {
+  AddedTerm load;
+  load.value = [forces, axis](const Points& x) {
+    double work = 0;
+    for (const auto& [v, force] : forces) work += force * x(v, axis);
+    return -work;
+  };
+  load.add_derivatives = [forces, axis](const Points&, Points& gradient, std::vector<ContactBlock>&) {
+    for (const auto& [v, force] : forces) gradient(v, axis) -= force;
+  };
+  return load;
 }
 
 }  // namespace selvedge
