@@ -5,7 +5,6 @@ namespace selvedge {
 // How a figure is judged.
 enum class Judged {
   relative,  // |measured / expected - 1| at most the bound
-  absolute,  // |measured - expected| at most the bound
   at_most,   // measured at most the bound
   at_least,  // measured at least the bound
   rises,     // measured above that of the run before by the bound

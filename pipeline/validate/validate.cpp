@@ -125,11 +125,9 @@ const ValidationRow* coarser(const std::vector<ValidationRow>& rows, const Valid
 
 void judge(const Measured& found, const std::vector<ValidationRow>& rows, ValidationRow& row) {
   switch (found.judged) {
-    case Judged::relative:
-    case Judged::absolute: {
+    case Judged::relative: {
       row.expected = found.expected;
-      const double difference = std::abs(found.measured - found.expected);
-      row.error = found.judged == Judged::relative ? difference / std::abs(found.expected) : difference;
+      row.error = std::abs(found.measured - found.expected) / std::abs(found.expected);
       row.passed = *row.error <= found.bound;
       const ValidationRow* before = coarser(rows, row, "resolution");
       if (before && before->error && *before->error > 0 && *row.error > 0)

@@ -28,7 +28,7 @@ struct ValidationRow {
   std::optional<double> expected;
   Judged judged = Judged::relative;
   double bound = 0;
-  std::optional<double> error;  // relative or absolute
+  std::optional<double> error;  // relative
   std::optional<double> order;  // of convergence, from the next coarser run of otherwise the same parameters
   bool counts = true;           // false: shown beside the others, need not pass
   bool passed = false;

@@ -13,43 +13,25 @@ std::string number(const std::optional<double>& value, const char* format = "{:.
   return value ? fmt::format(fmt::runtime(format), *value) : "";
 }
 
-std::string error_text(const ValidationRow& row) {
-  if (!row.error) return "";
-  return row.judged == Judged::relative ? fmt::format("{:.2f} %", 100 * *row.error) : fmt::format("{:.4f}", *row.error);
-}
+// How rows are judged, by their number: the name, and a bound in its unit for people.
+struct JudgedForm {
+  const char *name, *bound;
+  double unit;
+};
+constexpr JudgedForm judged_forms[]{
+    {"relative", "{:g} %", 100}, {"at_most", "<= {:g}", 1}, {"at_least", ">= {:g}", 1}, {"rises", "rises by {:g}", 1}};
 
-std::string bound_text(const ValidationRow& row) {
-  switch (row.judged) {
-    case Judged::relative:
-      return fmt::format("{:g} %", 100 * row.bound);
-    case Judged::absolute:
-      return fmt::format("{:g}", row.bound);
-    case Judged::at_most:
-      return fmt::format("<= {:g}", row.bound);
-    case Judged::at_least:
-      return fmt::format(">= {:g}", row.bound);
-    case Judged::rises:
-      return fmt::format("rises by {:g}", row.bound);
-  }
-  return "";
-}
+const JudgedForm& form_of(const ValidationRow& row) { return judged_forms[static_cast<std::size_t>(row.judged)]; }
 
-std::string verdict(const ValidationRow& row) { return !row.counts ? "shown" : row.passed ? "pass" : "FAIL"; }
-
-const char* judged_name(Judged judged) {
-  switch (judged) {
-    case Judged::relative:
-      return "relative";
-    case Judged::absolute:
-      return "absolute";
-    case Judged::at_most:
-      return "at_most";
-    case Judged::at_least:
-      return "at_least";
-    case Judged::rises:
-      return "rises";
-  }
-  return "";
+// A row by a format whose arguments are those of validate_markdown, in its order.
+std::string row_text(const char* format, const ValidationRow& row) {
+  return fmt::format(fmt::runtime(format), row.name, row.parameters, row.quantity, row.measured, number(row.expected),
+                     row.error ? fmt::format("{:.2f} %", 100 * *row.error) : "",
+                     fmt::format(fmt::runtime(form_of(row).bound), form_of(row).unit * row.bound),
+                     number(row.order, "{:.1f}"),
+                     !row.counts  ? "shown"
+                     : row.passed ? "pass"
+                                  : "FAIL");
 }
 
 }  // namespace
@@ -61,9 +43,7 @@ std::string validate_table(const std::vector<ValidationRow>& rows) {
   double seconds = 0;
   const ValidationRow* before = nullptr;
   for (const ValidationRow& row : rows) {
-    text += fmt::format("{:<11} {:<22} {:>10.5g} {:>10} {:>9} {:>14} {:>6} {:<6} {}\n", row.name, row.quantity,
-                        row.measured, number(row.expected), error_text(row), bound_text(row),
-                        number(row.order, "{:.1f}"), verdict(row), row.parameters);
+    text += row_text("{0:<11} {2:<22} {3:>10.5g} {4:>10} {5:>9} {6:>14} {7:>6} {8:<6} {1}\n", row);
     counted += row.counts;
     failed += row.counts && !row.passed;
     if (!before || before->parameters != row.parameters || before->name != row.name) seconds += row.seconds;
@@ -77,10 +57,7 @@ std::string validate_markdown(const std::vector<ValidationRow>& rows) {
   std::string text =
       "| case | parameters | quantity | measured | expected | error | bound | order | "
       "|\n|---|---|---|---|---|---|---|---|---|\n";
-  for (const ValidationRow& row : rows)
-    text += fmt::format("| {} | {} | {} | {:.5g} | {} | {} | {} | {} | {} |\n", row.name, row.parameters, row.quantity,
-                        row.measured, number(row.expected), error_text(row), bound_text(row),
-                        number(row.order, "{:.1f}"), verdict(row));
+  for (const ValidationRow& row : rows) text += row_text("| {} | {} | {} | {:.5g} | {} | {} | {} | {} | {} |\n", row);
   return text;
 }
 
@@ -88,7 +65,7 @@ std::string validate_csv(const std::vector<ValidationRow>& rows) {
   std::string text = "case,parameters,quantity,measured,expected,judged,bound,error,order,counts,passed,seconds\n";
   for (const ValidationRow& row : rows)
     text += fmt::format("{},{},{},{:.9g},{},{},{:g},{},{},{},{},{:.3f}\n", row.name, row.parameters, row.quantity,
-                        row.measured, number(row.expected, "{:.9g}"), judged_name(row.judged), row.bound,
+                        row.measured, number(row.expected, "{:.9g}"), form_of(row).name, row.bound,
                         number(row.error, "{:.6g}"), number(row.order, "{:.3f}"), row.counts, row.passed, row.seconds);
   return text;
 }
@@ -102,7 +79,7 @@ std::string validate_json(const std::vector<ValidationRow>& rows) {
                     {"quantity", row.quantity},
                     {"measured", row.measured},
                     {"expected", number_or_null(row.expected)},
-                    {"judged", judged_name(row.judged)},
+                    {"judged", form_of(row).name},
                     {"bound", row.bound},
                     {"error", number_or_null(row.error)},
                     {"order", number_or_null(row.order)},
