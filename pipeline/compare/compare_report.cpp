@@ -131,11 +131,10 @@ std::string compare_csv(const CompareResult& result) {
 }
 
 std::string compare_json(const CompareResult& result) {
-  Json scenes = Json::array(), rows = Json::array();
-  for (const CompareFloor& floor : result.floors) scenes.push_back(floor_json(floor));
-  for (const CompareRow& row : result.rows) rows.push_back(row_json(row));
-  return json_text(
-      {{"program_version", program_version()}, {"finished", result.finished}, {"scenes", scenes}, {"rows", rows}});
+  return json_text({{"program_version", program_version()},
+                    {"finished", result.finished},
+                    {"scenes", json_list(result.floors, floor_json)},
+                    {"rows", json_list(result.rows, row_json)}});
 }
 
 void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& result) {

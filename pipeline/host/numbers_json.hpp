@@ -20,4 +20,12 @@ inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+// The list of what to_json makes of each row.
+template <class Rows, class ToJson>
+nlohmann::ordered_json json_list(const Rows& rows, const ToJson& to_json) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& row : rows) list.push_back(to_json(row));
+  return list;
+}
+
 }  // namespace selvedge

@@ -60,7 +60,7 @@ std::vector<OutcomeResult> OutcomeWatch::results() const {
 }
 
 bool all_came_true(const std::vector<OutcomeResult>& results) {
-  return std::all_of(results.begin(), results.end(), [](const OutcomeResult& r) { return r.came_true; });
+  return std::ranges::all_of(results, &OutcomeResult::came_true);
 }
 
 std::string outcome_text(const Outcome& outcome, const OutcomeResult& result) {

@@ -176,8 +176,6 @@ std::vector<StabilityRow> stability(const StabilityRequest& request) {
   return rows;
 }
 
-bool passed(const std::vector<StabilityRow>& rows) {
-  return std::all_of(rows.begin(), rows.end(), [](const StabilityRow& row) { return row.passed(); });
-}
+bool passed(const std::vector<StabilityRow>& rows) { return std::ranges::all_of(rows, &StabilityRow::passed); }
 
 }  // namespace selvedge

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const StabilityRow& r) {
+Json stability_to_json(const StabilityRow& r) {
   return {{"case", r.name},
           {"run", r.run},
           {"passed", r.passed()},
@@ -44,9 +44,7 @@ Json to_json(const StabilityRow& r) {
 
 double grown(const StabilityRow& row) { return row.energy > 0 ? 100 * row.unaccounted / row.energy : 0; }
 
-long failed(const std::vector<StabilityRow>& rows) {
-  return std::count_if(rows.begin(), rows.end(), [](const StabilityRow& row) { return !row.passed(); });
-}
+long failed(const std::vector<StabilityRow>& rows) { return std::ranges::count(rows, false, &StabilityRow::passed); }
 
 double seconds(const std::vector<StabilityRow>& rows) {
   double sum = 0;
@@ -92,18 +90,14 @@ std::string stability_markdown(const std::vector<StabilityRow>& rows) {
 }
 
 std::string stability_csv(const std::vector<StabilityRow>& rows) {
-  Json table = Json::array();
-  for (const StabilityRow& row : rows) table.push_back(to_json(row));
-  return csv_of_json(table.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return csv_of_json(json_text(json_list(rows, stability_to_json)));
 }
 
 std::string stability_json(const std::vector<StabilityRow>& rows) {
-  Json runs = Json::array();
-  for (const StabilityRow& row : rows) runs.push_back(to_json(row));
   return json_text({{"program_version", program_version()},
                     {"passed", failed(rows) == 0},
                     {"seconds", seconds(rows)},
-                    {"runs", runs}});
+                    {"runs", json_list(rows, stability_to_json)}});
 }
 
 }  // namespace selvedge

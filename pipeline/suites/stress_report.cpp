@@ -41,7 +41,7 @@ constexpr auto stress_fields = [](auto& r, const auto& visit) {
   visit("failures", r.failures);
 };
 
-Json to_json(const StressRow& row) { return row_to_json(row, stress_fields); }
+Json stress_to_json(const StressRow& row) { return row_to_json(row, stress_fields); }
 
 // Rows of one scene lie together.
 template <class Each>
@@ -53,9 +53,7 @@ void for_each_scene(const std::vector<StressRow>& rows, const Each& each) {
   }
 }
 
-long failed(const std::vector<StressRow>& rows) {
-  return std::count_if(rows.begin(), rows.end(), [](const StressRow& r) { return !r.passed(); });
-}
+long failed(const std::vector<StressRow>& rows) { return std::ranges::count(rows, false, &StressRow::passed); }
 
 std::string text_row(const StressRow& r) {
   return fmt::format(
@@ -66,7 +64,9 @@ std::string text_row(const StressRow& r) {
 
 }  // namespace
 
-std::string stress_row_json(const StressRow& row, const std::string& key) { return kept_row_json(to_json(row), key); }
+std::string stress_row_json(const StressRow& row, const std::string& key) {
+  return kept_row_json(stress_to_json(row), key);
+}
 
 std::optional<StressRow> read_stress_row(const std::string& text, const std::string& key) {
   return read_kept_row<StressRow>(text, key, [](const Json& json, StressRow& row) {
@@ -76,21 +76,19 @@ std::optional<StressRow> read_stress_row(const std::string& text, const std::str
 }
 
 std::string stress_json(const std::vector<StressRow>& rows) {
-  Json scenes = Json::array(), repeats = Json::array();
-  for (const StressRow& row : rows) repeats.push_back(to_json(row));
+  Json scenes = Json::array();
   for_each_scene(rows, [&](const std::vector<StressRow>& of) {
     scenes.push_back(
         {{"scene", of[0].scene}, {"passed", failed(of) == 0}, {"repeats", of.size()}, {"failed", failed(of)}});
   });
-  const Json json = {
-      {"program_version", program_version()}, {"passed", failed(rows) == 0}, {"scenes", scenes}, {"repeats", repeats}};
-  return json_text(json);
+  return json_text({{"program_version", program_version()},
+                    {"passed", failed(rows) == 0},
+                    {"scenes", scenes},
+                    {"repeats", json_list(rows, stress_to_json)}});
 }
 
 std::string stress_csv(const std::vector<StressRow>& rows) {
-  Json table = Json::array();
-  for (const StressRow& row : rows) table.push_back(to_json(row));
-  return csv_of_json(table.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return csv_of_json(json_text(json_list(rows, stress_to_json)));
 }
 
 std::string stress_table(const std::vector<StressRow>& rows) {
@@ -102,7 +100,7 @@ std::string stress_table(const std::vector<StressRow>& rows) {
   text += "\n";
   for_each_scene(rows, [&](const std::vector<StressRow>& of) {
     text += fmt::format("{:<12} {} of {} passed\n", of[0].scene, static_cast<long>(of.size()) - failed(of), of.size());
-    const auto bad = std::find_if(of.begin(), of.end(), [](const StressRow& r) { return !r.passed(); });
+    const auto bad = std::ranges::find(of, false, &StressRow::passed);
     for (const std::string& line : bad == of.end() ? of[0].outcome : bad->failures) text += "    " + line + "\n";
   });
   return text;

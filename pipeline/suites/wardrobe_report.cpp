@@ -33,12 +33,12 @@ constexpr auto wardrobe_fields = [](auto& r, const auto& visit) {
   visit("failures", r.failures);
 };
 
-Json to_json(const WardrobeRow& row) { return row_to_json(row, wardrobe_fields); }
+Json wardrobe_to_json(const WardrobeRow& row) { return row_to_json(row, wardrobe_fields); }
 
 }  // namespace
 
 std::string wardrobe_row_json(const WardrobeRow& row, const std::string& key) {
-  return kept_row_json(to_json(row), key);
+  return kept_row_json(wardrobe_to_json(row), key);
 }
 
 std::optional<WardrobeRow> read_wardrobe_row(const std::string& text, const std::string& key) {
@@ -49,16 +49,13 @@ std::optional<WardrobeRow> read_wardrobe_row(const std::string& text, const std:
 }
 
 std::string wardrobe_json(const std::vector<WardrobeRow>& rows) {
-  Json list = Json::array();
-  for (const WardrobeRow& row : rows) list.push_back(to_json(row));
-  const bool passed = std::all_of(rows.begin(), rows.end(), [](const WardrobeRow& row) { return row.passed(); });
-  return json_text({{"program_version", program_version()}, {"passed", passed}, {"rows", list}});
+  return json_text({{"program_version", program_version()},
+                    {"passed", std::ranges::all_of(rows, &WardrobeRow::passed)},
+                    {"rows", json_list(rows, wardrobe_to_json)}});
 }
 
 std::string wardrobe_csv(const std::vector<WardrobeRow>& rows) {
-  Json table = Json::array();
-  for (const WardrobeRow& row : rows) table.push_back(to_json(row));
-  return csv_of_json(table.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return csv_of_json(json_text(json_list(rows, wardrobe_to_json)));
 }
 
 std::string wardrobe_table(const std::vector<WardrobeRow>& rows) {
