@@ -126,13 +126,14 @@ const Options<Comparison>& comparison_options() {
   return table;
 }
 
-void check_names(const Config& list, const std::vector<std::string>& names) {
+template <class Named>
+void check_names(const Config& list, const std::vector<Named>& all) {
+  const std::vector<std::string> names = names_of(all);
   for (std::size_t k = 0; k < names.size(); ++k) {
     const bool controls = std::ranges::any_of(names[k], [](unsigned char c) { return c < ' '; });
     if (controls || names[k].find('/') != std::string::npos)
       list.items[k].fail("has the name `" + names[k] + "`, which no file can have", "leave `/` and line breaks out");
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
-        names.begin() + static_cast<std::ptrdiff_t>(k))
+    if (std::ranges::find(names, names[k]) != names.begin() + static_cast<std::ptrdiff_t>(k))
       list.items[k].fail("has the name `" + names[k] + "` of another", "give every one its own name");
   }
 }
@@ -164,37 +165,31 @@ Comparison read_comparison(const std::filesystem::path& file, bool short_form,
   }
   Comparison comparison = comparison_options().read(config);
   comparison.file = file;
-  std::vector<std::string> scenes, settings;
   for (const Config& item : config["scenes"].items) {
     CompareScene scene = compared_scene_options().read(item);
     scene.file = file.parent_path() / item["file"].text();
     if (!std::filesystem::exists(scene.file))
       item["file"].fail("names the missing file " + scene.file.string(), "paths are relative to the comparison's file");
     scene.name = item["name"].given ? item["name"].text() : scene.file.stem().string();
-    scenes.push_back(scene.name);
     comparison.scenes.push_back(std::move(scene));
   }
   const std::filesystem::path folder = file.parent_path() / comparison.weights_folder;
-  for (const Config& item : config["settings"].items) {
-    comparison.settings.push_back(read_setting(item, folder));
-    settings.push_back(comparison.settings.back().name);
-  }
-  std::vector<std::string> drapes;
+  for (const Config& item : config["settings"].items) comparison.settings.push_back(read_setting(item, folder));
   for (const Config& item : config["drapes"].items) {
     ComparedDrapes one = compared_drapes_options().read(item);
     one.run = item["run"].text();
     if (one.name.empty()) one.name = one.run.filename().string();
-    drapes.push_back(one.name);
     comparison.drapes.push_back(std::move(one));
   }
-  check_names(config["drapes"], drapes);
-  check_names(config["scenes"], scenes);
-  check_names(config["settings"], settings);
-  if (settings.empty()) config["settings"].fail("is empty", "give at least one");
+  check_names(config["drapes"], comparison.drapes);
+  check_names(config["scenes"], comparison.scenes);
+  check_names(config["settings"], comparison.settings);
+  if (comparison.settings.empty()) config["settings"].fail("is empty", "give at least one");
   const bool sequences = comparison.sequences.count > 0 || !comparison.sequences.training.empty();
   if (comparison.scenes.empty() && !sequences && comparison.drapes.empty())
     config["scenes"].fail("is empty", "give at least one, or `sequences`, or `drapes`");
   const std::string& baseline = comparison.evaluation.baseline;
+  const std::vector<std::string> settings = names_of(comparison.settings);
   if (!baseline.empty() && std::ranges::find(settings, baseline) == settings.end())
     config["evaluation"]["baseline"].fail("names `" + baseline + "`, which is no setting",
                                           "settings: " + joined(settings) + suggestion(baseline, settings));

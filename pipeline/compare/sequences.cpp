@@ -17,13 +17,11 @@ namespace {
 constexpr int shapes = 20;  // of bodies, among which tangled starts are looked for
 
 Outfit outfit_of(const Comparison& comparison, const std::string& name) {
-  std::vector<std::string> known;
-  for (const Outfit& outfit : read_wardrobe(config_folder() / "outfits.yaml").outfits) {
-    if (outfit.name == name) return outfit;
-    known.push_back(outfit.name);
-  }
+  const std::vector<Outfit> all = read_wardrobe(config_folder() / "outfits.yaml").outfits;
+  const auto found = std::ranges::find(all, name, &Outfit::name);
+  if (found != all.end()) return *found;
   throw Error("`sequences` names the unknown outfit `" + name + "`", comparison.file.string(),
-              "outfits: " + joined(known));
+              "outfits: " + joined(names_of(all)));
 }
 
 RollMaker maker_of(const SequenceOptions& sequences, const Outfit& outfit) {

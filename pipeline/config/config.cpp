@@ -121,6 +121,14 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
   return near.empty() ? "" : "; did you mean `" + near + "`?";
 }
 
+void refuse_unknown(const std::vector<std::string>& words, const std::vector<std::string>& known,
+                    const std::string& what, const std::string& where, const std::string& listed) {
+  for (const std::string& word : words)
+    if (std::ranges::find(known, word) == known.end())
+      throw Error("there is no " + what + " `" + word + "`", where,
+                  listed + ": " + joined(known) + suggestion(word, known));
+}
+
 std::string section_chapter(const Section& section, const KeyPage& page) {
   std::string text = "### " + section.name + "\n\n";
   if (!section.about.empty()) text += section.about + "\n\n";

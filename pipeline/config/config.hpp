@@ -105,6 +105,16 @@ std::string to_yaml(const Config&);
 // "; did you mean `x`?" with the known word of the smallest edit distance, for error messages; empty if none is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 std::string joined(const std::vector<std::string>& words);
+// Throws Error for a word that is not known, with the known ones after `listed`. `what` is what a word names: "case".
+void refuse_unknown(const std::vector<std::string>& words, const std::vector<std::string>& known,
+                    const std::string& what, const std::string& where, const std::string& listed);
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  for (const Named& one : all) names.push_back(one.name);
+  return names;
+}
 
 // The keys of a section that a page shows, and the page on which each section has its chapter, empty: the same.
 struct KeyPage {

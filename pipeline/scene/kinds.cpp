@@ -18,10 +18,6 @@ const StepperKind* Kinds::find(const std::string& name) const {
   return kind == kinds_.end() ? nullptr : &*kind;
 }
 
-std::vector<std::string> Kinds::names() const {
-  std::vector<std::string> names;
-  for (const StepperKind& kind : kinds_) names.push_back(kind.name);
-  return names;
-}
+std::vector<std::string> Kinds::names() const { return names_of(kinds_); }
 
 }  // namespace selvedge

@@ -61,11 +61,7 @@ void give_sections(Config& scene, const std::string& key) {
 
 }  // namespace
 
-std::vector<std::string> quality_names() {
-  std::vector<std::string> names;
-  for (const QualityLevel& level : levels()) names.push_back(level.name);
-  return names;
-}
+std::vector<std::string> quality_names() { return names_of(levels()); }
 
 std::string set_quality(Config& scene) {
   const QualityLevel& level = level_of(scene["run"]["quality"].text());

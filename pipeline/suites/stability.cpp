@@ -22,16 +22,10 @@ namespace {
 
 std::vector<StabilityCase> chosen_cases(const StabilitySuite& suite, const StabilityRequest& request) {
   if (request.cases.empty()) return suite.cases;
-  std::vector<std::string> known;
-  for (const StabilityCase& one : suite.cases) known.push_back(one.name);
+  refuse_unknown(request.cases, names_of(suite.cases), "case", request.suite.string(), "cases");
   std::vector<StabilityCase> chosen;
-  for (const std::string& name : request.cases) {
-    const auto place = std::find(known.begin(), known.end(), name);
-    if (place == known.end())
-      throw Error("there is no case `" + name + "`", request.suite.string(),
-                  "cases: " + joined(known) + suggestion(name, known));
-    chosen.push_back(suite.cases[static_cast<std::size_t>(place - known.begin())]);
-  }
+  for (const std::string& name : request.cases)
+    chosen.push_back(*std::ranges::find(suite.cases, name, &StabilityCase::name));
   return chosen;
 }
 

@@ -43,11 +43,9 @@ std::vector<std::string> scene_names(const std::filesystem::path& configs) {
 
 Setup read_scene(const StressRequest& request, const std::string& name) {
   const std::filesystem::path file = request.configs / (name + ".yaml");
-  if (!std::filesystem::exists(file)) {
-    std::string known;
-    for (const std::string& scene : scene_names(request.configs)) known += (known.empty() ? "" : ", ") + scene;
-    throw Error("there is no scene `" + name + "`", request.configs.string(), "scenes: " + known);
-  }
+  if (!std::filesystem::exists(file))
+    throw Error("there is no scene `" + name + "`", request.configs.string(),
+                "scenes: " + joined(scene_names(request.configs)));
   Setup setup = read_setup(file);
   if (setup.outcomes.empty())
     throw Error("the scene states no `outcome`", file.string(), "say what must come true of it");
@@ -56,7 +54,7 @@ Setup read_scene(const StressRequest& request, const std::string& name) {
 
 // Whether the scene says that obstacles must wait for want of room.
 bool obstacles_must_lag(const Setup& setup) {
-  return std::any_of(setup.outcomes.begin(), setup.outcomes.end(), [](const Outcome& outcome) {
+  return std::ranges::any_of(setup.outcomes, [](const Outcome& outcome) {
     return std::holds_alternative<Lag>(outcome.measure) && outcome.once && outcome.least > 0;
   });
 }

@@ -35,9 +35,7 @@ struct Wear {
 std::vector<Wear> everything(const Wardrobe& wardrobe) {
   std::vector<Wear> all;
   for (const std::string& name : garment_names())
-    all.push_back(
-        {name, false,
-         std::find(wardrobe.validation.begin(), wardrobe.validation.end(), name) != wardrobe.validation.end()});
+    all.push_back({name, false, std::ranges::find(wardrobe.validation, name) != wardrobe.validation.end()});
   for (const Outfit& outfit : wardrobe.outfits) all.push_back({outfit.name, true, outfit.validation});
   return all;
 }
@@ -45,15 +43,10 @@ std::vector<Wear> everything(const Wardrobe& wardrobe) {
 // Those with the names, in the order of the list; all where no name is given.
 template <class Item>
 std::vector<Item> chosen(const std::vector<Item>& all, const std::vector<std::string>& names, const char* what) {
-  std::vector<std::string> known;
-  for (const Item& item : all) known.push_back(item.name);
-  for (const std::string& name : names)
-    if (std::none_of(all.begin(), all.end(), [&](const Item& item) { return item.name == name; }))
-      throw Error("there is no " + std::string(what) + " `" + name + "`", "wardrobe",
-                  "known: " + joined(known) + suggestion(name, known));
+  refuse_unknown(names, names_of(all), what, "wardrobe", "known");
   std::vector<Item> found;
   for (const Item& item : all)
-    if (names.empty() || std::find(names.begin(), names.end(), item.name) != names.end()) found.push_back(item);
+    if (names.empty() || std::ranges::find(names, item.name) != names.end()) found.push_back(item);
   return found;
 }
 

@@ -17,9 +17,7 @@ namespace selvedge {
 namespace {
 
 std::string listed_names(const std::vector<TrajectoryInfo::Body>& obstacles) {
-  std::vector<std::string> names;
-  for (const auto& obstacle : obstacles) names.push_back(obstacle.name);
-  return names.empty() ? "none" : joined(names);
+  return obstacles.empty() ? "none" : joined(names_of(obstacles));
 }
 
 // The obstacle that the cloth should fit.

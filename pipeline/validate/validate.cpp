@@ -26,16 +26,11 @@ std::vector<std::string> split(const std::string& list) {
 }
 
 std::vector<ValidationCase> chosen_cases(const std::vector<std::string>& names) {
-  if (names.empty()) return validation_cases();
-  std::vector<std::string> known;
-  for (const ValidationCase& one : validation_cases()) known.push_back(one.name);
+  const std::vector<ValidationCase>& all = validation_cases();
+  if (names.empty()) return all;
+  refuse_unknown(names, names_of(all), "case", "validate", "cases");
   std::vector<ValidationCase> chosen;
-  for (const std::string& name : names) {
-    const auto place = std::find(known.begin(), known.end(), name);
-    if (place == known.end())
-      throw Error("there is no case `" + name + "`", "validate", "cases: " + joined(known) + suggestion(name, known));
-    chosen.push_back(validation_cases()[static_cast<std::size_t>(place - known.begin())]);
-  }
+  for (const std::string& name : names) chosen.push_back(*std::ranges::find(all, name, &ValidationCase::name));
   return chosen;
 }
 
