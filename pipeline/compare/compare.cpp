@@ -253,15 +253,13 @@ CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t
 
 // No step was rejected, and no limit ended the run.
 bool came_to_its_end(const CompareRow& row) {
-  const auto finished = row.measures.find("finished");
-  return finished == row.measures.end() || finished->second == 1;
+  return !row.measures.contains("finished") || row.measure("finished") == 1;
 }
 
 // A hybrid row that hardly uses its proposals is another name for the parent of the hybrid.
 bool stands_for_itself(const CompareRow& row) {
   constexpr double least_share = 0.3;
-  const auto share = row.measures.find("proposal_share");
-  return share == row.measures.end() || share->second >= least_share;
+  return !row.measures.contains("proposal_share") || row.measure("proposal_share") >= least_share;
 }
 
 bool may_be_ranked(const CompareRow& row) {
@@ -300,7 +298,7 @@ void write_results(const CompareRequest& request, const Comparison& comparison, 
 void rank(std::vector<CompareRow>& rows) {
   for (CompareRow& row : rows) {
     row.ranked = may_be_ranked(row) && row.temporal > row.floor;
-    row.front = may_be_ranked(row) && std::none_of(rows.begin(), rows.end(), [&](const CompareRow& other) {
+    row.front = may_be_ranked(row) && std::ranges::none_of(rows, [&](const CompareRow& other) {
                   return other.scene == row.scene && may_be_ranked(other) && other.ms < row.ms &&
                          known_error(other) <= known_error(row) + row.floor;
                 });

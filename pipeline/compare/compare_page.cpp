@@ -108,10 +108,7 @@ std::string rows_table(const std::vector<const CompareRow*>& rows, bool referenc
     if (references)
       html += cell(1000 * row.temporal, "{:.3g}") +
               fmt::format("<td>{}</td><td>{}</td>", row.ranked ? "yes" : "", row.front ? "yes" : "");
-    for (const PageColumn* column : columns) {
-      const auto found = row.measures.find(column->name);
-      html += cell(found == row.measures.end() ? unknown : column->factor * found->second, column->format);
-    }
+    for (const PageColumn* column : columns) html += cell(column->factor * row.measure(column->name), column->format);
     html += "<td class='left'>" + html_text(row.trouble) + "</td></tr>";
   }
   return html + "</table></div>\n";
@@ -120,7 +117,7 @@ std::string rows_table(const std::vector<const CompareRow*>& rows, bool referenc
 double phases_of(const CompareRow& row, std::initializer_list<const char*> names) {
   double sum = 0;
   for (const char* name : names)
-    if (const auto found = row.measures.find(name); found != row.measures.end()) sum += found->second;
+    if (row.measures.contains(name)) sum += row.measure(name);
   return sum;
 }
 
@@ -162,11 +159,8 @@ std::string scene_section(const CompareFloor& floor, const CompareResult& result
   if (floor.states > 0) {
     html += plot_of(fmt::format("Distance to the temporal reference after {} frames", floor.horizon), "RMS [mm]", rows,
                     1000 * floor.floor(), [](const CompareRow& r) { return 1000 * r.temporal; });
-    html +=
-        plot_of("Distance to the algebraic reference after one frame", "RMS [mm]", rows, 0, [](const CompareRow& r) {
-          const auto found = r.measures.find("algebraic_1");
-          return found == r.measures.end() ? unknown : 1000 * found->second;
-        });
+    html += plot_of("Distance to the algebraic reference after one frame", "RMS [mm]", rows, 0,
+                    [](const CompareRow& r) { return 1000 * r.measure("algebraic_1"); });
   }
   html += rows_table(rows, floor.states > 0) + break_even(rows);
   if (std::filesystem::path view = result.views / (floor.scene + ".html");

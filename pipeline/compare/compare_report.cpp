@@ -45,8 +45,7 @@ const std::vector<Column>& columns() {
 }
 
 std::string share_cell(const CompareRow& row) {
-  const auto share = row.measures.find("proposal_share");
-  return share == row.measures.end() ? "" : fmt::format("{:.2f}", share->second);
+  return row.measures.contains("proposal_share") ? fmt::format("{:.2f}", row.measure("proposal_share")) : "";
 }
 
 std::string table_cell(const Column& column, const CompareRow& row) {
@@ -116,15 +115,9 @@ std::string compare_csv(const CompareResult& result) {
   text += ",trouble\n";
   for (const CompareRow& row : result.rows) {
     text += fmt::format("{},{}", quoted(row.scene), quoted(row.setting));
-    for (const Column& column : columns()) {
-      const double value = column.value(row);
-      text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
-    }
-    for (const std::string& name : measures) {
-      const auto found = row.measures.find(name);
-      const bool known = found != row.measures.end() && std::isfinite(found->second);
-      text += known ? fmt::format(",{:.9g}", found->second) : ",";
-    }
+    const auto add = [&](double value) { text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ","; };
+    for (const Column& column : columns()) add(column.value(row));
+    for (const std::string& name : measures) add(row.measure(name));
     text += fmt::format(",{}\n", quoted(row.trouble));
   }
   return text;

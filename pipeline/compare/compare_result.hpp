@@ -44,6 +44,11 @@ struct CompareRow {
   std::map<std::string, double> measures = {};  // by name: compare_columns.hpp
   std::vector<int> pairs_by_frame = {};         // of cloth, the start's first
   bool front = false;                           // nothing is faster and not worse by more than the floor
+
+  double measure(const std::string& name) const {  // unknown where the row has none of this name
+    const auto found = measures.find(name);
+    return found == measures.end() ? unknown : found->second;
+  }
 };
 
 inline bool is_clean(const CompareRow& row) { return row.pairs <= 0 && row.passed_through == 0; }

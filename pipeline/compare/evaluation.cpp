@@ -21,11 +21,6 @@ Rows rows_of(const std::vector<CompareRow>& all, const std::string& setting) {
   return found;
 }
 
-double measure_of(const CompareRow& row, const std::string& name) {
-  const auto found = row.measures.find(name);
-  return found == row.measures.end() ? unknown : found->second;
-}
-
 // Over the rows where it is known.
 template <class Value>
 double mean_over(const Rows& rows, const Value& value) {
@@ -39,7 +34,11 @@ double mean_over(const Rows& rows, const Value& value) {
   return count > 0 ? sum / count : unknown;
 }
 
-bool finished(const CompareRow& row) { return measure_of(row, "finished") == 1; }
+double mean_measure(const Rows& rows, const std::string& name) {
+  return mean_over(rows, [&](const CompareRow& row) { return row.measure(name); });
+}
+
+bool finished(const CompareRow& row) { return row.measure("finished") == 1; }
 
 // The same scene's row of another setting; null where it has none.
 const CompareRow* partner(const Rows& rows, const std::string& scene) {
@@ -52,7 +51,7 @@ double ratio_to(const Rows& rows, const Rows& baseline, const std::string& measu
   int count = 0;
   for (const CompareRow* row : rows) {
     const CompareRow* other = partner(baseline, row->scene);
-    const double ratio = other ? measure_of(*row, measure) / measure_of(*other, measure) : unknown;
+    const double ratio = other ? row->measure(measure) / other->measure(measure) : unknown;
     if (!(ratio > 0) || !std::isfinite(ratio)) continue;
     logs += std::log(ratio);
     ++count;
@@ -95,26 +94,23 @@ EvaluatedRow described(const Comparison& comparison, const Evaluation& evaluatio
     if (one.setting == setting && one.pairs_by_frame.empty() && row.trouble.empty()) row.trouble = one.trouble;
   row.sequences = static_cast<int>(rows.size());
   row.failed = static_cast<int>(std::ranges::count_if(rows, [](const CompareRow* r) { return !finished(*r); }));
-  const auto pairs = [](const CompareRow& r) { return measure_of(r, "pairs_mean"); };
-  const auto strain = [](const CompareRow& r) { return measure_of(r, "strain"); };
-  const auto strain_99 = [](const CompareRow& r) { return measure_of(r, "strain_99"); };
   for (const std::string& outfit : evaluation.outfits) {
     Rows of_outfit;
     for (const CompareRow* one : rows)
       if (one->outfit == outfit) of_outfit.push_back(one);
-    row.pairs_of_outfit.push_back(mean_over(of_outfit, pairs));
-    row.strain_of_outfit.push_back(mean_over(of_outfit, strain));
-    row.strain_99_of_outfit.push_back(mean_over(of_outfit, strain_99));
+    row.pairs_of_outfit.push_back(mean_measure(of_outfit, "pairs_mean"));
+    row.strain_of_outfit.push_back(mean_measure(of_outfit, "strain"));
+    row.strain_99_of_outfit.push_back(mean_measure(of_outfit, "strain_99"));
   }
-  row.pairs = mean_over(rows, pairs);
-  row.body_pairs = mean_over(rows, [](const CompareRow& r) { return measure_of(r, "body_pairs_mean"); });
+  row.pairs = mean_measure(rows, "pairs_mean");
+  row.body_pairs = mean_measure(rows, "body_pairs_mean");
   describe_tangled(rows, comparison.evaluation.left_frames, row);
   std::vector<double> ms;
   for (const CompareRow* one : rows) ms.push_back(one->ms);
   if (!ms.empty()) row.frames_a_second = 1000 / median(ms);
-  row.strain = mean_over(rows, strain);
-  row.strain_99 = mean_over(rows, strain_99);
-  row.depth = mean_over(rows, [](const CompareRow& r) { return measure_of(r, "depth"); });
+  row.strain = mean_measure(rows, "strain");
+  row.strain_99 = mean_measure(rows, "strain_99");
+  row.depth = mean_measure(rows, "depth");
   row.kinetic_ratio = ratio_to(rows, baseline, "kinetic");
   row.jitter_ratio = ratio_to(rows, baseline, "jitter");
   return row;
@@ -127,8 +123,8 @@ PairedRatio ratio_of(const std::vector<CompareRow>& all, const std::string& row,
   std::vector<double> a, b;
   for (const CompareRow* one : mine)
     if (const CompareRow* other = partner(theirs, one->scene)) {
-      a.push_back(measure_of(*one, "pairs_mean"));
-      b.push_back(measure_of(*other, "pairs_mean"));
+      a.push_back(one->measure("pairs_mean"));
+      b.push_back(other->measure("pairs_mean"));
     }
   PairedRatio ratio = paired_ratio(a, b, resamples);
   ratio.row = row;
