@@ -3,40 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace selvedge {
 namespace {
 
-const char* over_text(Over over) {
-  switch (over) {
-    case Over::sum:
-      return "sum";
-    case Over::largest:
-      return "largest";
-    case Over::smallest:
-      return "smallest";
-    case Over::at_start:
-      return "of frame 0";
-    case Over::at_end:
-      return "of the last frame";
-    case Over::frames:
-      return "number of frames";
-    case Over::first_frame:
-      return "first frame, -1: none";
-    case Over::last_frame:
-      return "last frame, -1: none";
-    case Over::by_word:
-      return "frames by word";
-    case Over::milliseconds:
-      return "mean [ms]";
-    case Over::milliseconds_where_there:
-      return "mean [ms], absent where it is 0";
-    case Over::by_obstacle:
-      return "by obstacle";
-  }
-  return "";
-}
+// In the order of Over.
+constexpr std::array over_texts{"sum",
+                                "largest",
+                                "smallest",
+                                "of frame 0",
+                                "of the last frame",
+                                "number of frames",
+                                "first frame, -1: none",
+                                "last frame, -1: none",
+                                "frames by word",
+                                "mean [ms]",
+                                "mean [ms], absent where it is 0",
+                                "by obstacle"};
 
 }  // namespace
 
@@ -55,7 +40,8 @@ std::string fields_markdown(const std::vector<FieldLine>& lines) {
   for (const FieldLine& line : lines) {
     std::string keys;
     for (const InSummary& one : line.in_summary)
-      keys += fmt::format("{}`{}`: {}", keys.empty() ? "" : "; ", one.key, over_text(one.over));
+      keys += fmt::format("{}`{}`: {}", keys.empty() ? "" : "; ", one.key,
+                          over_texts.at(static_cast<std::size_t>(one.over)));
     page += fmt::format("| `{}` | {} | {} | {} |\n", line.name, line.unit, line.about, keys);
   }
   return page;

@@ -28,6 +28,7 @@ using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::ve
 enum class ColumnType { none, flag, whole, large, real, word, text, list };
 
 // How the values of all frames become one of the summary. Code of their own (summary.cpp) makes the last four.
+// bound_field.cpp has a text for each and field_total.cpp a value, in this order.
 enum class Over {
   sum,
   largest,

@@ -1,6 +1,7 @@
 #include "pipeline/reports/field_total.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "collision/geometry/error.hpp"
 
@@ -42,30 +43,16 @@ const FieldTotal& total_of(const FieldTotals& totals, std::string_view name) {
 }
 
 double value_of(const FieldTotal& total, Over over) {
-  switch (over) {
-    case Over::sum:
-      return total.sum;
-    case Over::largest:
-      return total.largest;
-    case Over::smallest:
-      return total.smallest;
-    case Over::at_start:
-      return total.at_start;
-    case Over::at_end:
-      return total.at_end;
-    case Over::frames:
-      return total.frames;
-    case Over::first_frame:
-      return total.first_frame;
-    case Over::last_frame:
-      return total.last_frame;
-    case Over::by_word:
-    case Over::milliseconds:
-    case Over::milliseconds_where_there:
-    case Over::by_obstacle:
-      break;
-  }
-  return 0;
+  const std::array values{total.sum,
+                          total.largest,
+                          total.smallest,
+                          total.at_start,
+                          total.at_end,
+                          double(total.frames),
+                          double(total.first_frame),
+                          double(total.last_frame)};  // in the order of Over
+  const auto k = static_cast<std::size_t>(over);
+  return k < values.size() ? values[k] : 0;
 }
 
 }  // namespace selvedge

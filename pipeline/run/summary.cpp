@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -13,17 +14,8 @@ namespace selvedge {
 namespace {
 
 const char* end_name(RunEnd end) {
-  switch (end) {
-    case RunEnd::running:
-      return "running";
-    case RunEnd::finished:
-      return "finished";
-    case RunEnd::interrupted:
-      return "interrupted";
-    case RunEnd::rejected:
-      return "rejected";
-  }
-  return "";
+  constexpr std::array names{"running", "finished", "interrupted", "rejected"};  // in the order of RunEnd
+  return names.at(static_cast<std::size_t>(end));
 }
 
 std::vector<std::pair<std::string, double>> phases_in_milliseconds(const RunSummary& summary) {
@@ -41,12 +33,12 @@ std::vector<std::pair<std::string, double>> phases_in_milliseconds(const RunSumm
 }
 
 // The verdicts that occurred, each with its number of frames.
-std::vector<std::pair<std::string, int>> verdict_counts(const RunSummary& s) {
-  std::vector<std::pair<std::string, int>> counts;
+std::string verdicts_text(const RunSummary& s) {
+  std::string text;
   const std::vector<int>& frames = total_of(s.fields, "verdict").by_word;
   for (std::size_t k = 0; k < frames.size(); ++k)
-    if (frames[k] > 0) counts.emplace_back(verdict_names()[k], frames[k]);
-  return counts;
+    if (frames[k] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", verdict_names()[k], frames[k]);
+  return text;
 }
 
 void add_labels(const StepReport& report, int index, RunSummary& summary) {
@@ -69,35 +61,32 @@ nlohmann::ordered_json switched_off_json(const RunSummary& s) {
   return all;
 }
 
-// Labels and sentences about cloth that contact left alone, and budgets that ran out.
-std::vector<std::pair<const char*, std::string>> label_lines(const RunSummary& s) {
-  std::vector<std::pair<const char*, std::string>> lines;
+// Adds lines about cloth that contact left alone, and budgets that ran out.
+void add_doubtful(const RunSummary& s, LabelLines& add) {
   for (const RunSummary::SwitchedOff& one : s.switched_off)
     if (one.frames > 0)
-      lines.emplace_back("switched off",
-                         fmt::format("up to {} triangles of `{}`, in {} frame{}, first in {}: it crosses itself there, "
-                                     "and cloth that its parts catch is let through",
-                                     one.most, one.obstacle, one.frames, one.frames == 1 ? "" : "s", one.first_frame));
+      add("switched off",
+          fmt::format("up to {} triangles of `{}`, in {} frame{}, first in {}: it crosses itself there, "
+                      "and cloth that its parts catch is let through",
+                      one.most, one.obstacle, one.frames, one.frames == 1 ? "" : "s", one.first_frame));
   if (const auto pushed = static_cast<long>(total_of(s.fields, "pushed_out").sum); pushed > 0)
-    lines.emplace_back("pushed out", fmt::format("{} vertices over all frames, by the repulsive layer", pushed));
+    add("pushed out", fmt::format("{} vertices over all frames, by the repulsive layer", pushed));
   const auto frames = [&](std::string_view field) { return total_of(s.fields, field).frames; };
   if (frames("not_converged") > 0)
-    lines.emplace_back("not converged", fmt::format("{} frames: {:.2g} m off at most", frames("not_converged"),
-                                                    total_of(s.fields, "unsolved").largest));
+    add("not converged", fmt::format("{} frames: {:.2g} m off at most", frames("not_converged"),
+                                     total_of(s.fields, "unsolved").largest));
   if (frames("out_of_newton") > 0)
-    lines.emplace_back("out of Newton", fmt::format("{} frames: later solves were rough, {:.2g} m off at most",
-                                                    frames("out_of_newton"), total_of(s.fields, "unsolved").largest));
+    add("out of Newton", fmt::format("{} frames: later solves were rough, {:.2g} m off at most",
+                                     frames("out_of_newton"), total_of(s.fields, "unsolved").largest));
   if (frames("out_of_untangling") > 0)
-    lines.emplace_back("out of untangling", fmt::format("{} frames: what was tangled still waited for the next",
-                                                        frames("out_of_untangling")));
+    add("out of untangling",
+        fmt::format("{} frames: what was tangled still waited for the next", frames("out_of_untangling")));
   if (frames("out_of_response") > 0)
-    lines.emplace_back("out of response",
-                       fmt::format("{} frames: later motion was shortened", frames("out_of_response")));
+    add("out of response", fmt::format("{} frames: later motion was shortened", frames("out_of_response")));
   if (frames("out_of_proofs") > 0)
-    lines.emplace_back("out of proofs", fmt::format("{} frames: the audit of their motion is not whole, and what it "
-                                                    "gave up counts as passed through",
-                                                    frames("out_of_proofs")));
-  return lines;
+    add("out of proofs", fmt::format("{} frames: the audit of their motion is not whole, and what it "
+                                     "gave up counts as passed through",
+                                     frames("out_of_proofs")));
 }
 
 nlohmann::ordered_json total_json(const BoundField<StepReport>& field, const FieldTotal& total, const InSummary& one,
@@ -232,10 +221,7 @@ std::string summary_text(const RunSummary& s) {
   add("cloth", fmt::format("{} vertices, {} triangles", s.vertices, s.triangles));
   add("time a frame", fmt::format("{:.1f} ms (median {:.1f})", mean_milliseconds(s), median_milliseconds(s)));
   if (!phases.empty()) add("  by phase [ms]", phases);
-  std::string verdicts;
-  for (const auto& [name, frames] : verdict_counts(s))
-    verdicts += fmt::format("{}{} {}", verdicts.empty() ? "" : ", ", name, frames);
-  if (!verdicts.empty()) add("proposals", verdicts);
+  if (const std::string verdicts = verdicts_text(s); !verdicts.empty()) add("proposals", verdicts);
   if (s.peak_memory > 0) add("peak memory", fmt::format("{:.0f} MB", static_cast<double>(s.peak_memory) / 1e6));
   add("worst stretch", fmt::format("{:.3f} in frame {}", s.max_stretch, s.max_stretch_frame));
   add("intersecting pairs",
@@ -273,7 +259,7 @@ std::string summary_text(const RunSummary& s) {
     add("obstacles lag",
         fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
                     largest("obstacle_lag"), static_cast<long>(largest("pairs_wanted")), largest("depth_wanted")));
-  for (const auto& [label, sentence] : label_lines(s)) add(label, sentence);
+  add_doubtful(s, add);
   add("left out", out.empty() ? "nothing" : out);
   for (const std::string& warning : s.warnings) add("warning", warning);
   return add.text;
