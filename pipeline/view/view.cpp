@@ -30,12 +30,7 @@ void write_view(const std::vector<std::filesystem::path>& runs, const std::files
 }
 
 void write_view_page(const std::vector<ViewRun>& runs, const std::filesystem::path& html, const ViewOptions& options) {
-  const std::string page = view_page(runs, options);
-  write_file(html, page);
-}
-
-void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html) {
-  write_view(runs, html, ViewOptions{});
+  write_file(html, view_page(runs, options));
 }
 
 std::optional<std::string> write_page(const std::filesystem::path& folder) {

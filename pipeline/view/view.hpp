@@ -55,8 +55,7 @@ ViewRun open_view_run(const std::filesystem::path&);
 
 // Opens the runs with open_view_run and writes their page as write_view_page does.
 void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html,
-                const ViewOptions& options);
-void write_view(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& html);
+                const ViewOptions& options = {});
 
 // Makes the page view.html beside the run.h5 of a run's folder. Absent if it was made; else the reason, since a run
 // must not fail because of its page.

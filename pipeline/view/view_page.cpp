@@ -1,7 +1,5 @@
-#include <fstream>
-#include <sstream>
-
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/view/page_sources.hpp"
 #include "pipeline/view/view.hpp"
 #include "pipeline/view/view_data.hpp"
@@ -10,14 +8,12 @@ namespace selvedge {
 namespace {
 
 std::string read_package_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (text.str().empty())
+  std::string text = whole_file(file);
+  if (text.empty())
     throw Error("three.js is absent, and the page is drawn with it", file.string(),
                 "install the package libjs-three (apt install libjs-three), or configure with "
                 "-DSELVEDGE_THREE_DIR=FOLDER");
-  return text.str();
+  return text;
 }
 
 // Replaces {{name}} in the template by the part with that name. Inserted text is not searched again.
