@@ -143,23 +143,23 @@ void FlipMesh::make_delaunay() {
 }
 
 int FlipMesh::find(const Vec2& p) const {
+  // The first edge of a triangle that has p on its outer side; -1: none.
+  const auto way_out = [&](int t) {
+    const auto& c = triangles[t].corner;
+    for (int k = 0; k < 3; ++k)
+      if (orient2d(points[c[k]], points[c[(k + 1) % 3]], p) < 0) return k;
+    return -1;
+  };
   int t = std::min(last_, static_cast<int>(triangles.size()) - 1);
   // The walk may hit the outline of a polygon that is not convex; then every triangle is tested.
   for (std::size_t step = 0; step < triangles.size(); ++step) {
-    const FlipTriangle& triangle = triangles[t];
-    int out = -1;
-    for (std::size_t k = 0; k < 3 && out < 0; ++k)
-      if (orient2d(points[triangle.corner[k]], points[triangle.corner[(k + 1) % 3]], p) < 0) out = static_cast<int>(k);
+    const int out = way_out(t);
     if (out < 0) return last_ = t;
-    t = triangle.beyond[out];
+    t = triangles[t].beyond[out];
     if (t < 0) break;
   }
-  for (t = 0; t < static_cast<int>(triangles.size()); ++t) {
-    const auto& c = triangles[t].corner;
-    bool inside = true;
-    for (std::size_t k = 0; k < 3 && inside; ++k) inside = orient2d(points[c[k]], points[c[(k + 1) % 3]], p) >= 0;
-    if (inside) return last_ = t;
-  }
+  for (t = 0; t < static_cast<int>(triangles.size()); ++t)
+    if (way_out(t) < 0) return last_ = t;
   return -1;
 }
 
