@@ -21,16 +21,9 @@ struct Check {
 };
 
 std::string shown(const YAML::Node& node) {
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
-      return "`" + node.Scalar() + "`";
-    case YAML::NodeType::Sequence:
-      return "a list";
-    case YAML::NodeType::Map:
-      return "a section";
-    default:
-      return "nothing";
-  }
+  if (node.IsScalar()) return "`" + node.Scalar() + "`";
+  if (node.IsSequence()) return "a list";
+  return node.IsMap() ? "a section" : "nothing";
 }
 
 std::string expected(const Key& key) {

@@ -173,25 +173,15 @@ class Document {
       const double scale = normalized ? static_cast<double>(std::numeric_limits<Value>::max()) : 1;
       return std::max(static_cast<double>(value) / scale, normalized ? -1.0 : std::numeric_limits<double>::lowest());
     };
-    switch (type) {
-      case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return as(std::int8_t{});
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return as(std::uint8_t{});
-      case TINYGLTF_COMPONENT_TYPE_SHORT:
-        return as(std::int16_t{});
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return as(std::uint16_t{});
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        return as(std::uint32_t{});
-      case TINYGLTF_COMPONENT_TYPE_FLOAT: {
-        float value;
-        std::memcpy(&value, at, sizeof value);
-        return value;
-      }
-      default:
-        fail(part, "is of no known type", "export it anew");
-    }
+    if (type == TINYGLTF_COMPONENT_TYPE_BYTE) return as(std::int8_t{});
+    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return as(std::uint8_t{});
+    if (type == TINYGLTF_COMPONENT_TYPE_SHORT) return as(std::int16_t{});
+    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return as(std::uint16_t{});
+    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) return as(std::uint32_t{});
+    if (type != TINYGLTF_COMPONENT_TYPE_FLOAT) fail(part, "is of no known type", "export it anew");
+    float value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
   }
 
   std::filesystem::path file_;
