@@ -6,6 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
+#include "pipeline/shapes/generate.hpp"
 
 namespace selvedge {
 
@@ -53,15 +54,13 @@ BodyPart body_part(const Mesh& mesh, const std::filesystem::path& file, const Na
   }
   if (triangles.empty())
     throw Error("has no faces of a body", file.string(), "the groups that are taken, or `body`, must have them");
-  BodyPart part{{}, std::vector<int>(used.size(), -1), Triangles(static_cast<Eigen::Index>(triangles.size()), 3)};
+  BodyPart part{{}, std::vector<int>(used.size(), -1), {}};
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
     part.row_of[v] = static_cast<int>(part.vertices.size());
     part.vertices.push_back(static_cast<int>(v));
   }
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      part.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) = part.row_of[triangles[t][k]];
+  part.triangles = to_triangles(triangles).unaryExpr([&](int v) { return part.row_of[v]; });
   return part;
 }
 

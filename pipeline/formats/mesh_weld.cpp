@@ -13,8 +13,7 @@ void renumber(const std::vector<int>& numbers, int count, Mesh& mesh) {
   for (std::size_t v = numbers.size(); v-- > 0;)  // the lowest comes last and stays
     x.row(numbers[v]) = mesh.x.row(static_cast<Eigen::Index>(v));
   mesh.x = std::move(x);
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) mesh.triangles(t, k) = numbers[mesh.triangles(t, k)];
+  for (int& v : mesh.triangles.reshaped()) v = numbers[v];
   for (int& corner : mesh.corners) corner = numbers[corner];
   for (auto& [name, vertices] : mesh.groups) {
     for (int& v : vertices) v = numbers[v];

@@ -129,25 +129,24 @@ BodyPose solve(const Skeleton& k, Figure& f, const std::array<FootPose, 2>& feet
   local[pelvis] = body;
   for (const int j : {spine1, spine2, spine3}) local[j] = bent(Vec3(f.spine()) / 3);
   local[neck] = local[head] = bent(Vec3(f.head()) / 2);
-  for (std::size_t s = 0; s < 2; ++s) {
-    const int side = static_cast<int>(s);
-    const FootPose stand = raised(feet[s], f.heel_up(side));
+  for (const int side : {0, 1}) {
+    const FootPose stand = raised(feet[side], f.heel_up(side));
     const Ankle ankle_pose = ankle_of(k, side, stand);
     const double facing = (f.yaw() + stand.yaw) / 2 + k.mirror[side] * f.knee_out(side);
     // The knee's axis follows the roll of the hips, so that a leg that is raised aside still bends forward.
     const Leg leg = solve_leg(k, side, hip_at(k, f, side), ankle_pose.at, about(1, facing) * Vec3::UnitX());
-    local[hip + s] = body.transpose() * leg.hip;
-    local[knee + s] = leg.hip.transpose() * leg.knee;
-    local[ankle + s] = leg.knee.transpose() * ankle_pose.rotation;
-    local[foot + s] = about(0, -stand.heel_up);  // toes stay flat
+    local[hip + side] = body.transpose() * leg.hip;
+    local[knee + side] = leg.hip.transpose() * leg.knee;
+    local[ankle + side] = leg.knee.transpose() * ankle_pose.rotation;
+    local[foot + side] = about(0, -stand.heel_up);  // toes stay flat
     const Mat3 arm = middle(side) * rotation_matrix(f.arm(side));
     const Vec3 x = k.mirror[side] * Vec3::UnitX();
     const auto onto_x = [&](int from, int to) { return rotation_between(joint(k, to) - joint(k, from), x); };
     const Mat3 upper = onto_x(shoulder + side, elbow + side), fore = onto_x(elbow + side, wrist + side);
-    local[collar + s] = collar_rotation(side, arm * x, f.shrug(side));
-    local[shoulder + s] = local[collar + s].transpose() * arm * upper;
-    local[elbow + s] = upper.transpose() * about(1, -k.mirror[side] * f.elbow(side)) * fore;
-    local[wrist + s] = about(2, k.mirror[side] * f.wrist(side));
+    local[collar + side] = collar_rotation(side, arm * x, f.shrug(side));
+    local[shoulder + side] = local[collar + side].transpose() * arm * upper;
+    local[elbow + side] = upper.transpose() * about(1, -k.mirror[side] * f.elbow(side)) * fore;
+    local[wrist + side] = about(2, k.mirror[side] * f.wrist(side));
   }
   BodyPose pose{Points(24, 3), pelvis_at(k, f) - joint(k, pelvis)};
   for (std::size_t j = 0; j < 24; ++j)
