@@ -125,7 +125,7 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   row.max_stretch = summary.max_stretch;
   row.notes = setup.warnings;
   row.proposed = frames_of(summary, Verdict::admitted) + frames_of(summary, Verdict::refined);
-  watch.write(row);
+  static_cast<StabilityMeasures&>(row) = watch.measures();
   judge_row(summary, limits, setup.kind.network, row);
   row.seconds = seconds_since(started);
   keep_or_remove(folder, !row.passed(), request.log);

@@ -7,12 +7,8 @@
 
 namespace selvedge {
 
-// One run of the suite, and what came of it.
-struct StabilityRow {
-  std::string name, run;  // of the case and of the run in it
-  std::string stepper;
-  int vertices = 0, frames = 0, frames_wanted = 0;
-  double seconds = 0;
+// What was measured in a run of the suite.
+struct StabilityMeasures {
   long nonfinite = 0;      // numbers in states and reports, over all frames
   double energy = 0;       // largest kinetic and elastic energy [J]
   Work work;               // sums over the run [J]
@@ -20,9 +16,17 @@ struct StabilityRow {
   double end_speed = 0;    // RMS over the last tenth of the run, of the speed of a fall by the cloth's extent
   double newton = 0;       // iterations a substep, worst frame
   double linear = 0;       // iterations a Newton iteration, worst frame
+  long jumped = 0;         // obstacles that jumped
+};
+
+// One run of the suite, and what came of it.
+struct StabilityRow : StabilityMeasures {
+  std::string name, run;  // of the case and of the run in it
+  std::string stepper;
+  int vertices = 0, frames = 0, frames_wanted = 0;
+  double seconds = 0;
   bool clean_start = false;
-  long jumped = 0;  // obstacles that jumped
-  long pairs = 0;   // intersecting pairs over all frames
+  long pairs = 0;  // intersecting pairs over all frames
   int end_pairs = 0, end_inside = 0;
   double max_stretch = 1;
   int proposed = 0;                   // frames that a hybrid stepper made of a proposal

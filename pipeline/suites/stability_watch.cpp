@@ -28,31 +28,28 @@ StabilityWatch::StabilityWatch(const Setup& setup, const State& start, const Ste
 // Total energy; notes the largest without gravity.
 double StabilityWatch::energy(const State& state, const Vec3& acceleration) {
   const Energies e = energies(scene_, terms_, state.x, state.v, acceleration);
-  largest_ = std::max(largest_, e.kinetic + e.membrane + e.bending);
+  found_.energy = std::max(found_.energy, e.kinetic + e.membrane + e.bending);
   return e.total();
 }
 
-void StabilityWatch::count_iterations(const StepReport& report) {
-  newton_ = std::max(newton_, report.iterations / std::max(1.0, static_cast<double>(report.substeps)));
-  linear_ = std::max(linear_, report.linear_iterations / std::max(1.0, static_cast<double>(report.iterations)));
-}
-
 void StabilityWatch::operator()(const FrameEvent& event) {
-  count_iterations(event.report);
-  if (event.report.status != StepStatus::accepted) return;
+  const StepReport& report = event.report;
+  found_.newton = std::max(found_.newton, report.iterations / std::max(1.0, double(report.substeps)));
+  found_.linear = std::max(found_.linear, report.linear_iterations / std::max(1.0, double(report.iterations)));
+  if (report.status != StepStatus::accepted) return;
   const State& state = event.state;
-  nonfinite_ += count_nonfinite(state.x) + count_nonfinite(state.v) + !std::isfinite(event.report.residual);
-  for (const Points& obstacle : state.obstacles) nonfinite_ += count_nonfinite(obstacle);
-  if (nonfinite_ > 0) return;
+  found_.nonfinite += count_nonfinite(state.x) + count_nonfinite(state.v) + !std::isfinite(report.residual);
+  for (const Points& obstacle : state.obstacles) found_.nonfinite += count_nonfinite(obstacle);
+  if (found_.nonfinite > 0) return;
   State from = before_;
-  if (event.report.collision.jumped > 0) {  // a new start: what jumped did no work, it left cloth inside
+  if (report.collision.jumped > 0) {  // a new start: what jumped did no work, it left cloth inside
     from.obstacles = state.obstacles;
     from.clean = false;
-    jumped_ += event.report.collision.jumped;
+    found_.jumped += report.collision.jumped;
   }
-  work_ += bound_(from, state, event.drive);
-  const double left = energy(state, event.drive.acceleration) - work_.total();
-  unaccounted_ = std::max(unaccounted_, left - lowest_);
+  found_.work += bound_(from, state, event.drive);
+  const double left = energy(state, event.drive.acceleration) - found_.work.total();
+  found_.unaccounted = std::max(found_.unaccounted, left - lowest_);
   lowest_ = std::min(lowest_, left);
   if (state.frame > (1 - end_part) * setup_.run.frames) {
     end_sum_ += terms_.masses.dot(state.v.rowwise().squaredNorm()) / terms_.masses.sum();
@@ -61,20 +58,15 @@ void StabilityWatch::operator()(const FrameEvent& event) {
   before_ = state;
 }
 
-void StabilityWatch::write(StabilityRow& row) const {
+StabilityMeasures StabilityWatch::measures() const {
   constexpr double earth = 9.81;  // where nothing falls [m/s2]
   const double gravity = setup_.drive_at(0).acceleration.norm();
   const Points& rest = setup_.scene.rest;
   const double extent = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   const double fall = std::sqrt(2 * (gravity > 0 ? gravity : earth) * extent);
-  row.nonfinite = nonfinite_;
-  row.energy = largest_;
-  row.work = work_;
-  row.unaccounted = unaccounted_;
-  row.end_speed = end_frames_ > 0 ? std::sqrt(end_sum_ / end_frames_) / fall : 0;
-  row.newton = newton_;
-  row.linear = linear_;
-  row.jumped = jumped_;
+  StabilityMeasures found = found_;
+  found.end_speed = end_frames_ > 0 ? std::sqrt(end_sum_ / end_frames_) / fall : 0;
+  return found;
 }
 
 }  // namespace selvedge

@@ -23,8 +23,8 @@ const std::filesystem::path suite_file = source_root() / "configs/stability.yaml
 const char* falling_sheet = "cloths: [{name: sheet, rectangle: {size: [0.3, 0.3], resolution: 4}}]\nrun: {frames: 4}";
 
 // What the watch makes of four frames of a scene that stands still, but for what is done to the second by hand.
-StabilityRow watched(const Folder& folder, const char* scene, const StepperTraits& stepper,
-                     const std::function<void(State&)>& spoil) {
+StabilityMeasures watched(const Folder& folder, const char* scene, const StepperTraits& stepper,
+                          const std::function<void(State&)>& spoil) {
   const Setup setup = read_setup(fake::write(folder, "scene.yaml", scene));
   StabilityWatch watch(setup, setup.initial, stepper);
   State state = setup.initial;
@@ -39,12 +39,10 @@ StabilityRow watched(const Folder& folder, const char* scene, const StepperTrait
     if (frame == 2) spoil(state);
     watch({state, setup.drive_at(state.time), report, 0});
   }
-  StabilityRow row;
-  watch.write(row);
-  return row;
+  return watch.measures();
 }
 
-StabilityRow thrown(const Folder& folder, const Vec3& velocity) {
+StabilityMeasures thrown(const Folder& folder, const Vec3& velocity) {
   return watched(folder, falling_sheet, {}, [&](State& state) { state.v.rowwise() = velocity.transpose(); });
 }
 
@@ -78,12 +76,12 @@ TEST_CASE("stability: the short form of the suite passes", "[stability][.long]")
 
 TEST_CASE("stability: energy from nowhere, numbers that are none and lasting motion are seen", "[stability]") {
   const Folder folder("watch");
-  const StabilityRow calm = thrown(folder, Vec3::Zero());
+  const StabilityMeasures calm = thrown(folder, Vec3::Zero());
   CHECK(calm.unaccounted <= 1e-12);
   CHECK(calm.end_speed == 0);
   CHECK(calm.newton == 3);
   CHECK(calm.linear == 5);
-  const StabilityRow fast = thrown(folder, Vec3(2, 0, 0));
+  const StabilityMeasures fast = thrown(folder, Vec3(2, 0, 0));
   CHECK(fast.unaccounted == Approx(0.5 * 0.2 * 0.09 * 4));
   CHECK(fast.end_speed > 0.5);
   const double none = std::numeric_limits<double>::quiet_NaN();
