@@ -27,33 +27,27 @@ std::map<std::string, double> numbers_from(const Json& json) {
   return values;
 }
 
+constexpr auto floor_fields = [](auto& f, const auto& visit) {
+  visit("scene", f.scene);
+  visit("vertices", f.vertices);
+  visit("frames", f.frames);
+  visit("states", f.states);
+  visit("horizon", f.horizon);
+  visit("motion", f.motion);
+  visit("steps", f.steps);
+  visit("jittered", f.jittered);
+  visit("lost", f.lost);
+};
+
 }  // namespace
 
 std::string part_json(const CompareFloor& f, const std::string& key) {
-  return kept_row_json({{"scene", f.scene},
-                        {"vertices", f.vertices},
-                        {"frames", f.frames},
-                        {"states", f.states},
-                        {"horizon", f.horizon},
-                        {"motion", f.motion},
-                        {"steps", f.steps},
-                        {"jittered", f.jittered},
-                        {"lost", f.lost}},
-                       key);
+  return kept_row_json(row_to_json(f, floor_fields), key);
 }
 
 std::optional<CompareFloor> read_floor(const std::string& text, const std::string& key) {
-  return read_kept_row<CompareFloor>(text, key, [](const Json& j, CompareFloor& f) {
-    j.at("scene").get_to(f.scene);
-    j.at("vertices").get_to(f.vertices);
-    j.at("frames").get_to(f.frames);
-    j.at("states").get_to(f.states);
-    j.at("horizon").get_to(f.horizon);
-    j.at("motion").get_to(f.motion);
-    j.at("steps").get_to(f.steps);
-    j.at("jittered").get_to(f.jittered);
-    j.at("lost").get_to(f.lost);
-  });
+  return read_kept_row<CompareFloor>(text, key,
+                                     [](const Json& json, CompareFloor& f) { row_from_json(json, floor_fields, f); });
 }
 
 std::string part_json(const CompareErrors& e, const std::string& key) {

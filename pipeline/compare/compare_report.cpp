@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "collision/geometry/path_beside.hpp"
@@ -134,33 +135,26 @@ void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& 
   const std::filesystem::path beside = path_beside(path);
   h5::File file = h5::File::create(beside);
   const h5::Handle rows = file.make_group("rows"), scenes = file.make_group("scenes");
-  std::vector<std::string> scene, setting, trouble, names;
-  for (const CompareRow& row : result.rows) {
-    scene.push_back(row.scene);
-    setting.push_back(row.setting);
-    trouble.push_back(row.trouble);
-  }
+  const auto write_texts = [&file](const std::string& place, const auto& all, auto member) {
+    std::vector<std::string> texts;
+    for (const auto& one : all) texts.push_back(one.*member);
+    file.write_texts(place, texts);
+  };
+  const auto write_numbers = [&file](const std::string& place, const auto& all, auto value) {
+    std::vector<double> numbers;
+    for (const auto& one : all) numbers.push_back(std::invoke(value, one));
+    file.write_constant(place, H5T_NATIVE_DOUBLE, {numbers.size()}, numbers.data());
+  };
   file.write_text("program_version", program_version());
-  file.write_texts("rows/scene", scene);
-  file.write_texts("rows/setting", setting);
-  file.write_texts("rows/trouble", trouble);
-  for (const Column& column : columns()) {
-    std::vector<double> values;
-    for (const CompareRow& row : result.rows) values.push_back(column.value(row));
-    file.write_constant(std::string("rows/") + column.name, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
-  }
-  std::vector<double> motion, steps, jittered, lost;
-  for (const CompareFloor& f : result.floors) {
-    names.push_back(f.scene);
-    motion.push_back(f.motion);
-    steps.push_back(f.steps);
-    jittered.push_back(f.jittered);
-    lost.push_back(f.lost);
-  }
-  file.write_texts("scenes/scene", names);
-  for (const auto& [name, values] :
-       {std::pair{"motion", &motion}, {"steps", &steps}, {"jittered", &jittered}, {"lost", &lost}})
-    file.write_constant(std::string("scenes/") + name, H5T_NATIVE_DOUBLE, {values->size()}, values->data());
+  write_texts("rows/scene", result.rows, &CompareRow::scene);
+  write_texts("rows/setting", result.rows, &CompareRow::setting);
+  write_texts("rows/trouble", result.rows, &CompareRow::trouble);
+  for (const Column& column : columns()) write_numbers(std::string("rows/") + column.name, result.rows, column.value);
+  write_texts("scenes/scene", result.floors, &CompareFloor::scene);
+  write_numbers("scenes/motion", result.floors, &CompareFloor::motion);
+  write_numbers("scenes/steps", result.floors, &CompareFloor::steps);
+  write_numbers("scenes/jittered", result.floors, &CompareFloor::jittered);
+  write_numbers("scenes/lost", result.floors, &CompareFloor::lost);
   file.close();
   std::filesystem::rename(beside, path);
 }
