@@ -169,11 +169,9 @@ RunCommand info_command(CLI::App& command) {
   command.add_option("--keys", *keys, "user: what most scenes need; expert: all other keys of scene files")
       ->check(CLI::IsMember({"user", "expert"}));
   return [keys](bool json) {
-    if (!keys->empty()) {
-      std::cout << scene_keys_text(*keys == "user" ? KeyTier::user : KeyTier::expert);
-      return 0;
-    }
-    std::cout << (json ? info_json() : info_text());
+    std::cout << (!keys->empty() ? scene_keys_text(*keys == "user" ? KeyTier::user : KeyTier::expert)
+                  : json         ? info_json()
+                                 : info_text());
     return 0;
   };
 }

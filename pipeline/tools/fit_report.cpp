@@ -60,13 +60,12 @@ std::filesystem::path scene_file(const FitRequest& request) {
               "name the scene that the run was made of with --scene");
 }
 
-// A value per vertex: that of its row, or NaN.
-template <class Value>
-std::vector<float> by_row(const FitMeasures& measures, const Value& of) {
+// The ease per vertex [mm]: that of its row, or NaN.
+std::vector<float> ease_by_vertex(const FitMeasures& measures) {
   std::vector<float> values;
   for (const int row : measures.row) {
-    const std::optional<double> value = row < 0 ? std::nullopt : of(measures.rows[static_cast<std::size_t>(row)]);
-    values.push_back(value ? static_cast<float>(*value) : std::numeric_limits<float>::quiet_NaN());
+    const std::optional<double> ease = row < 0 ? std::nullopt : measures.rows[static_cast<std::size_t>(row)].ease;
+    values.push_back(ease ? static_cast<float>(1e3 * *ease) : std::numeric_limits<float>::quiet_NaN());
   }
   return values;
 }
@@ -116,12 +115,9 @@ void write_fit_page(const FitRequest& request, const FitReport& report, ViewRun 
   const FitMeasures& found = report.measures;
   run.frame_count = 1;
   run.frame = [frame = run.frame, index = report.frame](int) { return frame(index); };
-  run.maps = {
-      map_of("ease", "mm",
-             by_row(found, [](const FitRow& row) { return row.ease ? std::optional(1e3 * *row.ease) : std::nullopt; }),
-             false),
-      map_of("gap", "mm", scaled(found.gap, 1e3), true), map_of("strain", "%", scaled(found.strain, 100), true),
-      map_of("pressure", "Pa", scaled(found.pressure, 1), true)};
+  run.maps = {map_of("ease", "mm", ease_by_vertex(found), false), map_of("gap", "mm", scaled(found.gap, 1e3), true),
+              map_of("strain", "%", scaled(found.strain, 100), true),
+              map_of("pressure", "Pa", scaled(found.pressure, 1), true)};
   run.table.titles = titles();
   for (const FitRow& row : found.rows) run.table.rows.push_back(cells(row));
   write_view_page({run}, request.out);
