@@ -316,9 +316,7 @@ void write_views(const CompareRequest& request, const SceneWork& work, CompareRe
   result.views = request.out / "views";
   make_folder(result.views);
   try {
-    ViewOptions options;
-    options.limit = most_bytes;
-    if (!runs.empty()) write_view(runs, result.views / (work.scene->name + ".html"), options);
+    if (!runs.empty()) write_view(runs, result.views / (work.scene->name + ".html"), {.limit = most_bytes});
   } catch (const Error& error) {
     say(request, work.scene->name + ": no page that plays it: " + error.what());
   }

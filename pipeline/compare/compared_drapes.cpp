@@ -107,9 +107,7 @@ void write_method_page(const DrapeRun& run, std::initializer_list<const char*> n
   if (views.size() < 2) return;
   views.push_back(view_of(
       run, "truth", [](DrapeBody& body) { return body.sample.drape.truth; }, picked));
-  ViewOptions options;
-  options.limit = most_bytes;
-  write_view_page(views, page, options);
+  write_view_page(views, page, {.limit = most_bytes});
 }
 
 std::string one_line(std::string text) {

@@ -65,19 +65,17 @@ bool same_matrix(const Matrix& a, const Matrix& b) {
 struct TrajectoryCheck {
   const std::filesystem::path& file;
 
-  void count(const std::string& field, std::size_t found, std::size_t wanted, const std::string& what) const {
+  void count(const std::string& field, Eigen::Index found, Eigen::Index wanted, const std::string& what) const {
     if (found != wanted) refuse(file, field, fmt::format("has {} {}, the scene has {}", found, what, wanted));
   }
   void same(const std::string& field, bool same, const std::string& what) const {
     if (!same) refuse(file, field, "has other " + what + " than the scene");
   }
   void cloth(const TrajectoryInfo& found, const TrajectoryInfo& wanted) const {
-    count("cloth/rest", static_cast<std::size_t>(found.rest.rows()), static_cast<std::size_t>(wanted.rest.rows()),
-          "vertices");
-    count("cloth/triangles", static_cast<std::size_t>(found.triangles.rows()),
-          static_cast<std::size_t>(wanted.triangles.rows()), "triangles");
-    count("cloth/names", found.cloth_names.size(), wanted.cloth_names.size(), "cloths");
-    count("cloth/pins", found.pins.size(), wanted.pins.size(), "pins");
+    count("cloth/rest", found.rest.rows(), wanted.rest.rows(), "vertices");
+    count("cloth/triangles", found.triangles.rows(), wanted.triangles.rows(), "triangles");
+    count("cloth/names", std::ssize(found.cloth_names), std::ssize(wanted.cloth_names), "cloths");
+    count("cloth/pins", std::ssize(found.pins), std::ssize(wanted.pins), "pins");
     same("cloth/names", found.cloth_names == wanted.cloth_names, "names");
     same("cloth/first_vertex", found.cloth_first_vertex == wanted.cloth_first_vertex, "cloths");
     same("cloth/first_triangle", found.cloth_first_triangle == wanted.cloth_first_triangle, "cloths");
@@ -87,13 +85,12 @@ struct TrajectoryCheck {
     same("cloth/pins", found.pins == wanted.pins, "pins");
   }
   void obstacles(const TrajectoryInfo& found, const TrajectoryInfo& wanted) const {
-    count("obstacles", found.obstacles.size(), wanted.obstacles.size(), "obstacles");
+    count("obstacles", std::ssize(found.obstacles), std::ssize(wanted.obstacles), "obstacles");
     for (std::size_t k = 0; k < wanted.obstacles.size(); ++k) {
       const TrajectoryInfo::Body &its = found.obstacles[k], &own = wanted.obstacles[k];
       const std::string field = fmt::format("obstacles/{}", k);
       if (its.name != own.name) refuse(file, field + "/name", "is `" + its.name + "`, in the scene `" + own.name + "`");
-      count(field + "/x", static_cast<std::size_t>(its.vertex_count), static_cast<std::size_t>(own.vertex_count),
-            "vertices");
+      count(field + "/x", its.vertex_count, own.vertex_count, "vertices");
       same(field + "/triangles", same_matrix(its.triangles, own.triangles), "triangles");
     }
   }

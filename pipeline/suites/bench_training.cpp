@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <optional>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/parallel.hpp"
+#include "collision/geometry/stopwatch.hpp"
 #include "learned/gradients/adam.hpp"
 #include "learned/gradients/initial_weights.hpp"
 #include "pipeline/suites/bench_engine.hpp"
@@ -16,7 +16,6 @@
 namespace selvedge {
 namespace {
 
-double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double busy_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // Seconds of the rounds; the median is what counts, as other work comes and goes.
@@ -25,9 +24,10 @@ struct Laps {
 
   template <class Work>
   void time(Work&& work) {
-    const double begin = wall_now(), busy_begin = busy_now();
+    Stopwatch watch;
+    const double busy_begin = busy_now();
     work();
-    wall.push_back(wall_now() - begin);
+    wall.push_back(watch.lap());
     busy.push_back(busy_now() - busy_begin);
   }
   StepSeconds median() const { return {middle(wall), middle(busy)}; }

@@ -14,7 +14,7 @@ namespace selvedge {
 struct ViewOptions {
   // Folder with three.min.js (r111) and examples/js/controls/OrbitControls.js; empty: the one found when the program
   // was built.
-  std::filesystem::path three;
+  std::filesystem::path three = {};
   // Limit of the geometry of all runs in the page [bytes, as text]. A run above its equal share is drawn at every k-th
   // frame, with the smallest k that fits, and at its last; its plots keep every frame.
   std::size_t limit = 60'000'000;
