@@ -48,10 +48,10 @@ std::optional<AlgebraicError> algebraic_error(const Setup& setup, const State& s
   const StepProblem problem{base.h, &base.x, &base.v, &drive.pins, drive.acceleration, drive.wind, {}};
   AlgebraicError result;
   result.reference_converged = reference.solve(problem, minimiser).converged;
-  result.motion = root_mean_square(minimiser - from.x);
-  if (!(result.motion > 0)) return result;
-  result.error = root_mean_square(to.x - minimiser) / result.motion;
-  result.largest = (to.x - minimiser).rowwise().norm().maxCoeff() / result.motion;
+  const double motion = root_mean_square(minimiser - from.x);
+  if (!(motion > 0)) return result;
+  result.error = root_mean_square(to.x - minimiser) / motion;
+  result.largest = (to.x - minimiser).rowwise().norm().maxCoeff() / motion;
   return result;
 }
 

@@ -9,7 +9,6 @@ namespace selvedge {
 struct AlgebraicError {
   double error = 0;    // RMS distance of the step's result to the minimiser over the RMS motion in the step
   double largest = 0;  // largest distance of a vertex over the same motion
-  double motion = 0;   // RMS motion in the step [m]
   bool reference_converged = false;
 };
 

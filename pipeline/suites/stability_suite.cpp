@@ -58,10 +58,7 @@ const Section& suite_section() {
 }
 
 StabilityCase read_case(const Config& section, const std::filesystem::path& folder) {
-  StabilityCase one{section["name"].text(),
-                    section["about"].given ? section["about"].text() : "",
-                    folder / section["scene"].text(),
-                    {}};
+  StabilityCase one{section["name"].text(), folder / section["scene"].text(), {}};
   if (!std::filesystem::exists(one.scene)) section["scene"].fail("does not exist", "looked for " + one.scene.string());
   for (const Config& run : section["runs"].items) {
     std::vector<std::string> overrides = section["set"].words;

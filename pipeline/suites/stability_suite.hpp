@@ -20,7 +20,7 @@ struct StabilityRun {
 };
 
 struct StabilityCase {
-  std::string name, about;
+  std::string name;
   std::filesystem::path scene;
   std::vector<StabilityRun> runs;
 };
