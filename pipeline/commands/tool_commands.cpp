@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "collision/geometry/stopwatch.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/host/numbers_json.hpp"

@@ -7,7 +7,6 @@
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/host/html_text.hpp"
-#include "pipeline/host/version.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/tools/info.hpp"
 

@@ -1,10 +1,5 @@
 #include "pipeline/compare/compare_parts.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "pipeline/host/kept_row_json.hpp"
 #include "pipeline/host/numbers_json.hpp"
 

@@ -1,7 +1,5 @@
 #include "pipeline/compare/compared_drapes.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"

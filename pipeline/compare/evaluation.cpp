@@ -1,10 +1,7 @@
 #include "pipeline/compare/evaluation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pipeline/run/summary.hpp"
 #include "pipeline/training/random_stream.hpp"

@@ -8,7 +8,6 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/training/trained_on.hpp"
 
 namespace selvedge {

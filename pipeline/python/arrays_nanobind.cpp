@@ -2,8 +2,6 @@
 
 #include <nanobind/stl/string.h>
 
-#include <cmath>
-
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "physics/scene/scene_numbers.hpp"

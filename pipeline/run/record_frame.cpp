@@ -1,6 +1,5 @@
 #include "pipeline/run/record_frame.hpp"
 
-#include <algorithm>
 #include <set>
 
 #include "physics/frame/frame_audits.hpp"

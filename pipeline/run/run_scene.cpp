@@ -1,11 +1,7 @@
 #include "pipeline/run/run_scene.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <optional>
 
-#include "collision/geometry/error.hpp"
 #include "collision/geometry/stop_scope.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/formats/xdmf.hpp"

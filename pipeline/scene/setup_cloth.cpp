@@ -1,7 +1,5 @@
 #include "pipeline/scene/setup_cloth.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "pipeline/formats/mesh_weld.hpp"

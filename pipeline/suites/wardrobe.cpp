@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "collision/geometry/error.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
 #include "pipeline/config/config.hpp"

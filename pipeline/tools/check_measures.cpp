@@ -6,7 +6,6 @@
 #include "collision/geometry/error.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "physics/energies/measures.hpp"
-#include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/measures/published_measures.hpp"
 #include "pipeline/measures/run_measures.hpp"

@@ -1,7 +1,5 @@
 #include "pipeline/tools/push_mesh.hpp"
 
-#include <limits>
-
 #include "collision/distance/edge_pass.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/stopwatch.hpp"

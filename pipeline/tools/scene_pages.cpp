@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
-#include "collision/geometry/error.hpp"
 #include "pipeline/config/section_tree.hpp"
 #include "pipeline/scene/config_scene.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "collision/audit/audit.hpp"
 #include "collision/distance/signed_distance.hpp"
-#include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_io.hpp"

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include "pipeline/validate/known_answers.hpp"
 #include "pipeline/validate/validate_strip.hpp"

@@ -1,8 +1,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-
 #include "collision/geometry/error.hpp"
 #include "pipeline/validate/known_answers.hpp"
 #include "pipeline/validate/validate_strip.hpp"

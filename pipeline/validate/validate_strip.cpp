@@ -1,7 +1,6 @@
 #include "pipeline/validate/validate_strip.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <numeric>
 
