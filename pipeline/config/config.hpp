@@ -109,6 +109,7 @@ std::string joined(const std::vector<std::string>& words);
 void refuse_unknown(const std::vector<std::string>& words, const std::vector<std::string>& known,
                     const std::string& what, const std::string& where, const std::string& listed);
 
+// The names of things that have one, in their order.
 template <class Named>
 std::vector<std::string> names_of(const std::vector<Named>& all) {
   std::vector<std::string> names;

@@ -2,7 +2,7 @@
 
 namespace selvedge {
 
-// How a figure is judged.
+// How a figure is judged. validate_report.cpp has a form for each, in this order.
 enum class Judged {
   relative,  // |measured / expected - 1| at most the bound
   at_most,   // measured at most the bound
