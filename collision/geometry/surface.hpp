@@ -16,9 +16,9 @@ struct Surface {
   Triangles triangles;
   Edges edges;  // unique, sorted lexicographically
   std::vector<std::array<int, 2>>
-      edge_triangles;        // the two triangles of an edge, -1 at a boundary; the first two where non-manifold
-  Triangles triangle_edges;  // edge k of a triangle joins its corners k and (k + 1) % 3
-  Lists vertex_triangles;    // the triangles round each vertex, ascending
+      edge_triangles;             // the two triangles of an edge, -1 at a boundary; the first two where non-manifold
+  Triangles triangle_edges;       // edge k of a triangle joins its corners k and (k + 1) % 3
+  Lists vertex_triangles;         // the triangles round each vertex, ascending
   std::vector<int> vertex_owner;  // the lowest triangle that has the vertex, -1 for an isolated one
   std::vector<int> edge_owner;    // the lowest triangle that has the edge
   std::vector<int> component;     // connected component of each vertex (isolated vertices: their own)
@@ -47,7 +47,7 @@ struct Surface {
 Surface make_surface(int vertex_count, const Triangles& triangles);
 
 std::vector<int> face_counts(const Surface&);  // of each edge the number of its triangles
-bool is_closed(const Surface&);  // every edge has exactly two triangles
+bool is_closed(const Surface&);                // every edge has exactly two triangles
 
 // Closed loops of boundary vertices, each in the direction of its triangles' edges and each vertex at most once in a
 // loop. Edges that do not close, which only triangles of clashing orientation have, are left out.
