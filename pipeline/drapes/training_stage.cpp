@@ -21,12 +21,9 @@ double rate_at(const StageOptions& options, long step) {
 }
 
 void save(const StageRun& run, const TrainingStage& stage, const StageFile& at) {
-  StageFile file = stage.state();
-  file.config = at.config;
-  file.step = at.step;
-  file.seconds = at.seconds;
-  file.random = at.random;
-  file.csv = at.csv;
+  StageFile file = at, now = stage.state();
+  file.parts = std::move(now.parts);
+  file.numbers = std::move(now.numbers);
   write_stage_file(run.folder / (stage.name + ".h5"), file);
   write_file(run.folder / (stage.name + ".csv"), at.csv);
 }

@@ -12,7 +12,6 @@ namespace selvedge {
 class StepWindow {
  public:
   void add(const StepRecord&);
-  int count() const { return count_; }
   // Mean of the sums of losses since the last line, or in the last line if there are none since [J].
   double mean_sum() const { return count_ > 0 ? sum_ / count_ : last_mean_; }
   // Returns the line and starts the next one.

@@ -138,7 +138,7 @@ bool predict(Trainer& trainer, const FrameMaking& making, RollingState& state, N
   return next.x.allFinite();
 }
 
-RollMeasure measure_roll(Trainer& trainer, const Roll& roll, int gate) {
+RollMeasure measure_roll(Trainer& trainer, const Roll& roll) {
   const FrameMaking making = full_making(trainer);
   const Scene& scene = roll.scene->scene;
   RollingState state;
@@ -156,7 +156,6 @@ RollMeasure measure_roll(Trainer& trainer, const Roll& roll, int gate) {
       break;
     }
     const bool last_pass = state.pass + 1 == making.passes, settling = is_settling(state);
-    if (last_pass && gate > 0) next = gated(making, gate, next, state);
     if (last_pass && !settling) {
       result.energy += sum_at(making, state, next.x);
       const StrainMeasure strain = strain_of(scene, next.x);
@@ -216,7 +215,7 @@ TrainingMeasure measure(Trainer& trainer, TrainingWatch& watch) {
   result.step = trainer.counts.step;
   result.skinned = gap_of(trainer, making, watch.states, true);
   result.minimised = gap_of(trainer, making, watch.states, false);
-  result.roll = measure_roll(trainer, watch.roll, 0);
+  result.roll = measure_roll(trainer, watch.roll);
   return result;
 }
 

@@ -57,7 +57,7 @@ TrainingMeasure measure(Trainer&, TrainingWatch&);
 // Runs the network once for the state's pass. Returns false if the graph is refused.
 bool predict(Trainer&, const FrameMaking&, RollingState&, NextCloth&);
 
-// Rolls out with the trainer's weights and measures each frame. `gate` is that of PoolOptions.
-RollMeasure measure_roll(Trainer&, const Roll&, int gate);
+// Rolls out with the trainer's weights and measures each frame.
+RollMeasure measure_roll(Trainer&, const Roll&);
 
 }  // namespace selvedge

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 
 namespace selvedge {
 namespace {
@@ -15,12 +16,9 @@ bool any_begins(const std::vector<std::string>& tensors, const std::string& begi
 }
 
 std::vector<std::string> parts_between_slashes(const std::string& path) {
-  std::vector<std::string> parts(1);
-  for (const char c : path)
-    if (c == '/')
-      parts.emplace_back();
-    else
-      parts.back() += c;
+  std::istringstream rest(path);
+  std::vector<std::string> parts;
+  for (std::string part; std::getline(rest, part, '/');) parts.push_back(part);
   return parts;
 }
 

@@ -89,7 +89,7 @@ double tangled_pairs(const std::filesystem::path& stage, Overrides overrides) {
     request.cloth_contact = true;
     request.frames = 30;
     request.first_frame = 0;
-    const RollMeasure measure = measure_roll(*trainer, make_roll(maker, request), 0);
+    const RollMeasure measure = measure_roll(*trainer, make_roll(maker, request));
     CHECK(measure.finite);
     pairs += measure.pairs / 4;
   }
