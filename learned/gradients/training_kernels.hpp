@@ -1,6 +1,6 @@
 #pragma once
 
-#include "learned/network/instruction_set.hpp"
+#include "learned/network/engine_kernels.hpp"
 
 namespace selvedge {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "learned/network/engine.hpp"
-#include "learned/network/instruction_set.hpp"
+#include "learned/network/engine_kernels.hpp"
 
 namespace selvedge {
 

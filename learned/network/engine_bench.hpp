@@ -1,7 +1,7 @@
 #pragma once
 
 #include "learned/network/engine.hpp"
-#include "learned/network/instruction_set.hpp"
+#include "learned/network/engine_kernels.hpp"
 
 namespace selvedge {
 

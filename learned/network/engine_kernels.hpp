@@ -1,8 +1,16 @@
 #pragma once
 
-#include "learned/network/instruction_set.hpp"
+#include <string>
 
 namespace selvedge {
+
+// Instruction sets of the kernels: plain x86-64 (or the machine's own), AVX2 with FMA, AVX-512. Results differ by
+// rounding.
+enum class InstructionSet { plain, avx2, avx512 };
+
+bool is_supported(InstructionSet);      // by this machine
+InstructionSet best_instruction_set();  // of the supported ones
+std::string name_of(InstructionSet);
 
 // Rows of activations that pass all layers of a perceptron while they are in the cache.
 constexpr int tile_rows = 24;

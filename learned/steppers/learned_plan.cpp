@@ -1,7 +1,6 @@
-#include "learned/steppers/learned_plan.hpp"
-
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
+#include "learned/steppers/learned_stepper.hpp"
 
 namespace selvedge {
 namespace {

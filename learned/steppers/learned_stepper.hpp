@@ -5,6 +5,7 @@
 
 #include "learned/network/weights.hpp"
 #include "learned/steppers/network_device.hpp"
+#include "physics/scene/features.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 
@@ -35,5 +36,9 @@ StepperTraits learned_traits(const Architecture&);
 // an omitted vertex, and for a missing device. A step throws Error for a time step other than 1/30 s.
 std::unique_ptr<Stepper> make_learned_stepper(const Scene&, const Architecture&, const NetworkWeights&,
                                               const LearnedOptions& = {});
+
+// Lines for `selvedge plan`: inputs of the network that the scene uses or leaves out, and parts of the scene that the
+// network ignores.
+std::vector<PlanLine> learned_plan_lines(const Scene&, const Architecture&, const LearnedOptions&);
 
 }  // namespace selvedge

@@ -7,7 +7,7 @@
 #include "collision/geometry/adjacency.hpp"
 #include "learned/repulsion/neural_distance.hpp"
 #include "learned/repulsion/repulsive_layer.hpp"
-#include "pipeline/drapes/drape_path_hdf5.hpp"
+#include "pipeline/drapes/drape_set.hpp"
 
 namespace selvedge {
 

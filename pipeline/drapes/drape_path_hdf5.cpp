@@ -1,9 +1,8 @@
-#include "pipeline/drapes/drape_path_hdf5.hpp"
-
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
 #include "physics/scene/memory.hpp"
+#include "pipeline/drapes/drape_set.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 
 namespace selvedge {

@@ -13,7 +13,6 @@
 #include "physics/frame/make_frame.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/drapes/drape_path_hdf5.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/numbers_json.hpp"

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "learned/network/weights_hdf5.hpp"
-#include "learned/steppers/learned_plan.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/learned_stepper.hpp"
 #include "physics/steppers/carried_stepper.hpp"

@@ -10,7 +10,6 @@
 #include "collision/geometry/parallel.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/gradients/adam.hpp"
-#include "learned/gradients/initial_weights.hpp"
 #include "pipeline/suites/bench_engine.hpp"
 
 namespace selvedge {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
-#include "learned/gradients/initial_weights.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"

@@ -1,6 +1,6 @@
 #include <cstdlib>
 
-#include "pipeline/drapes/drape_path_hdf5.hpp"
+#include "pipeline/drapes/drape_set.hpp"
 #include "tests/fuzz/valid_hdf5.hpp"
 
 using namespace selvedge;

@@ -4,7 +4,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/gradients/adam.hpp"
-#include "learned/gradients/initial_weights.hpp"
 #include "tests/learned/random_graph.hpp"
 
 namespace selvedge::test_adam {

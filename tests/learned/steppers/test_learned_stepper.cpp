@@ -7,7 +7,7 @@
 #include "learned/graph/integration.hpp"
 #include "learned/network/engine.hpp"
 #include "learned/network/packed_network.hpp"
-#include "learned/steppers/learned_plan.hpp"
+#include "learned/steppers/learned_stepper.hpp"
 #include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/threads.hpp"

@@ -2,7 +2,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/search/intersections.hpp"
-#include "pipeline/drapes/drape_path_hdf5.hpp"
+#include "pipeline/drapes/drape_set.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
 #include "pipeline/drapes/stage_file_hdf5.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "learned/gradients/initial_weights.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/compare/training_sequences.hpp"
 #include "pipeline/scene/setup.hpp"
