@@ -8,6 +8,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/weights/pickle_check.hpp"
+#include "pipeline/weights/stored_archive.hpp"
 #include "pipeline/weights/torch_tensor.hpp"
 
 namespace selvedge {
@@ -122,12 +123,7 @@ class PickleReader {
   }
   unsigned char next() { return static_cast<unsigned char>(take(1)[0]); }
 
-  std::uint64_t little_endian(std::size_t count) {
-    std::uint64_t value = 0;
-    const std::string_view raw = take(count);
-    for (std::size_t k = 0; k < count; ++k) value |= std::uint64_t{static_cast<unsigned char>(raw[k])} << (8 * k);
-    return value;
-  }
+  std::uint64_t little_endian(std::size_t count) { return number_at(take(count), 0, count); }
 
   double big_endian_double() {
     std::uint64_t bits = 0;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
 
 #include "collision/geometry/error.hpp"
 
@@ -14,12 +13,6 @@ namespace {
 constexpr std::uint64_t largest_directory = std::uint64_t{16} << 20, largest_entry = std::uint64_t{256} << 20,
                         most_read = std::uint64_t{1} << 30, most_entries = 100'000;
 constexpr std::size_t end_size = 22, end64_size = 56, locator_size = 20, entry_size = 46, header_size = 30;
-
-std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t count) {
-  std::uint64_t value = 0;
-  for (std::size_t k = 0; k < count; ++k) value |= std::uint64_t{static_cast<unsigned char>(bytes[at + k])} << (8 * k);
-  return value;
-}
 
 bool has_signature(std::string_view bytes, std::size_t at, std::string_view signature) {
   return at <= bytes.size() && bytes.substr(at, 4) == signature;
@@ -71,6 +64,12 @@ void read_wide_fields(std::string_view extra, std::array<std::uint64_t*, 3> fiel
 }
 
 }  // namespace
+
+std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t count) {
+  std::uint64_t value = 0;
+  for (std::size_t k = 0; k < count; ++k) value |= std::uint64_t{static_cast<unsigned char>(bytes[at + k])} << (8 * k);
+  return value;
+}
 
 void StoredArchive::fail(const std::string& what) const {
   std::string line = what;  // names of entries come from the file

@@ -5,9 +5,13 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace selvedge {
+
+// The whole number of `count` bytes from `at` on, the lowest byte first. They must be there.
+std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t count);
 
 // The place of an entry by the archive's directory.
 struct StoredEntry {
