@@ -57,11 +57,7 @@ std::vector<DrapePart> parts_of(DrapeModel& model) {
 
 Repelled behind_drape(const DrapeModel& model, const DrapeCase& drape, const Points& x, const Adjacency& ring,
                       const AskDistance& ask, const DrapeRecipe& recipe) {
-  if (!recipe.layer) {
-    Repelled result;
-    result.x = x;
-    return result;
-  }
+  if (!recipe.layer) return {x, {}};
   if (model.has_neighbours())
     return repel(x, ring, ask, ask_neighbours(model.neighbours, x, ring, ask), recipe.repulsion);
   if (!model.has_scale()) {

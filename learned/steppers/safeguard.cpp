@@ -30,10 +30,7 @@ SafeguardReport Safeguard::operator()(const Points& from, Points& to) {
   try {
     return respond(from, to);
   } catch (const TooManyPairs& error) {
-    SafeguardReport report;
-    report.kept = false;
-    report.why = error.problem();
-    return report;
+    return {false, error.problem()};
   }
 }
 

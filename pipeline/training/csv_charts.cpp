@@ -21,15 +21,11 @@ CsvColumns::CsvColumns(const std::string& csv) {
   std::string line, word;
   while (std::getline(lines, line)) {
     std::istringstream words(line);
-    for (std::size_t k = 0; std::getline(words, word, ','); ++k) {
-      if (names.size() <= k && columns.empty()) {
-        names.push_back(word);
-        continue;
-      }
-      if (columns.size() < names.size()) columns.resize(names.size());
-      if (k < columns.size()) columns[k].push_back(std::strtod(word.c_str(), nullptr));
-    }
-    if (columns.empty()) columns.resize(names.size());
+    for (std::size_t k = 0; k < columns.size() && std::getline(words, word, ','); ++k)
+      columns[k].push_back(std::strtod(word.c_str(), nullptr));
+    if (!columns.empty()) continue;
+    while (std::getline(words, word, ',')) names.push_back(word);
+    columns.resize(names.size());
   }
 }
 

@@ -145,8 +145,6 @@ bool is_kept_now(const TrainingRun& run) {
   return at > 0 && step >= at && step - 1 < at;
 }
 
-bool is_paused(const TrainingRun& run) { return std::filesystem::exists(pause_file(run.folder)); }
-
 // Returns false if it was stopped before the last step.
 bool run_steps(TrainingRun& run) {
   Trainer& trainer = *run.trainer;
@@ -165,7 +163,7 @@ bool run_steps(TrainingRun& run) {
     if (run.request.stop && run.request.stop()) return false;
     if (seconds_since(looked) < 1) continue;
     looked = Clock::now();
-    if (is_paused(run)) return false;
+    if (std::filesystem::exists(pause_file(run.folder))) return false;
   }
   return true;
 }
