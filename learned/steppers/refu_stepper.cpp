@@ -5,7 +5,6 @@
 #include "collision/distance/outside_budget.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/stopwatch.hpp"
-#include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/frame/bounded_step.hpp"
 #include "physics/solve/bdf2.hpp"

@@ -6,11 +6,9 @@
 #include <fmt/format.h>
 
 #include "learned/steppers/learned_state.hpp"
-#include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/host/kept_rows.hpp"
-#include "pipeline/motions/clip_split.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_garment.hpp"
