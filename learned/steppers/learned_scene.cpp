@@ -101,7 +101,7 @@ FeatureRows material_inputs(std::span<const VertexMaterial> materials) {
   FeatureRows rows(static_cast<Eigen::Index>(materials.size()), 3);
   std::vector<std::string> clamped;
   for (std::size_t v = 0; v < materials.size(); ++v)
-    rows.row(static_cast<Eigen::Index>(v)) = material_numbers(materials[v], "", clamped);
+    rows.row(static_cast<Eigen::Index>(v)).head<3>() = material_numbers(materials[v], "", clamped);
   return rows;
 }
 
