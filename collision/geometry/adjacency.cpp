@@ -8,7 +8,7 @@ namespace selvedge {
 
 Adjacency adjacency_of(int vertex_count, const Edges& edges) {
   const std::span<const int> ends(edges.data(), static_cast<std::size_t>(edges.size()));
-  Lists by = indices_by_value(ends, vertex_count);
+  IndexLists by = indices_by_value(ends, vertex_count);
   for (int& i : by.item) i = ends[i ^ 1];  // the other end of the edge
   Adjacency result{std::move(by.begin), std::move(by.item)};
   for (int v = 0; v < vertex_count; ++v)

@@ -65,7 +65,7 @@ class CellGrid {
   Vec3 lo_ = Vec3::Zero();
   double cell_;
   std::array<int, 3> size_{1, 1, 1};
-  Lists points_;  // of each cell
+  IndexLists points_;  // of each cell
 };
 
 }  // namespace selvedge

@@ -4,8 +4,8 @@
 
 namespace selvedge {
 
-Lists indices_by_value(std::span<const int> values, int count) {
-  Lists by{std::vector<int>(static_cast<std::size_t>(count) + 1, 0), {}};
+IndexLists indices_by_value(std::span<const int> values, int count) {
+  IndexLists by{std::vector<int>(static_cast<std::size_t>(count) + 1, 0), {}};
   for (const int value : values)
     if (value >= 0) ++by.begin[value + 1];
   std::partial_sum(by.begin.begin(), by.begin.end(), by.begin.begin());

@@ -7,7 +7,7 @@
 namespace selvedge {
 
 // Lists of numbers, one after the other: list i is item[begin[i] .. begin[i + 1]).
-struct Lists {
+struct IndexLists {
   std::vector<int> begin, item;
 
   std::span<const int> of(int list) const {
@@ -16,7 +16,7 @@ struct Lists {
 };
 
 // For each value 0 .. count - 1 the indices at which it stands in `values`, ascending. Values below 0 are left out.
-Lists indices_by_value(std::span<const int> values, int count);
+IndexLists indices_by_value(std::span<const int> values, int count);
 
 // Sorts a list and leaves out repeats.
 template <class Item>

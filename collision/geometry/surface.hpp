@@ -18,7 +18,7 @@ struct Surface {
   std::vector<std::array<int, 2>>
       edge_triangles;             // the two triangles of an edge, -1 at a boundary; the first two where non-manifold
   Triangles triangle_edges;       // edge k of a triangle joins its corners k and (k + 1) % 3
-  Lists vertex_triangles;         // the triangles round each vertex, ascending
+  IndexLists vertex_triangles;    // the triangles round each vertex, ascending
   std::vector<int> vertex_owner;  // the lowest triangle that has the vertex, -1 for an isolated one
   std::vector<int> edge_owner;    // the lowest triangle that has the edge
   std::vector<int> component;     // connected component of each vertex (isolated vertices: their own)

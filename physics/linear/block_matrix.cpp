@@ -20,7 +20,7 @@ PairPattern make_pair_pattern(int rows, std::span<const int> element_begin, std:
 
   std::vector<int> ends;
   for (const auto& pair : pattern.pairs) ends.insert(ends.end(), pair.begin(), pair.end());
-  Lists by = indices_by_value(ends, rows);
+  IndexLists by = indices_by_value(ends, rows);
   // As pairs are ascending, so are the columns of a row.
   for (const int i : by.item) {
     pattern.column.push_back(ends[i ^ 1]);

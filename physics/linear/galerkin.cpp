@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-// Of each item the number of its list; `begin` as in Lists.
+// Of each item the number of its list; `begin` as in IndexLists.
 std::vector<int> lists_of_items(const std::vector<int>& begin) {
   std::vector<int> list;
   for (int i = 0; i + 1 < static_cast<int>(begin.size()); ++i) list.resize(begin[i + 1], i);
@@ -68,7 +68,7 @@ void RowCollector::sort_by_target() {
 // The product of the collected terms and their mirror images in one pattern: each row's left part first.
 Product RowCollector::with_mirrored(RowPattern& whole) {
   const int rows = static_cast<int>(begin_.size()) - 1;
-  const Lists left = indices_by_value(column_, rows);  // slots
+  const IndexLists left = indices_by_value(column_, rows);  // slots
   const std::vector<int> row_of_slot = lists_of_items(begin_);
   std::vector<int> entry(column_.size());  // of each slot its entry in the whole pattern
   whole.begin = {0};
@@ -143,7 +143,7 @@ CoarseContacts interpolate(std::span<const ContactBlock> contacts, const Prolong
 }  // namespace
 
 Restriction transpose(const Prolongation& p) {
-  const Lists by = indices_by_value(p.coarse, p.coarse_count());
+  const IndexLists by = indices_by_value(p.coarse, p.coarse_count());
   const std::vector<int> fine = lists_of_items(p.begin);
   Restriction result{by.begin, {}, {}};
   for (const int k : by.item) {
@@ -187,7 +187,7 @@ Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& 
 
 Product make_product(std::span<const ContactBlock> contacts, const Prolongation& p, RowPattern& coarse) {
   const CoarseContacts all = interpolate(contacts, p);
-  const Lists places = indices_by_value(all.node, p.coarse_count());
+  const IndexLists places = indices_by_value(all.node, p.coarse_count());
   const std::vector<int> contact = lists_of_items(all.begin);
   RowCollector rows(p.coarse_count());
   for (int a = 0; a < p.coarse_count(); ++a) {

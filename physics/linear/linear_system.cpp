@@ -35,7 +35,7 @@ ContactLists list_contacts(std::span<const ContactBlock> contacts, int vertices)
   std::vector<int> nodes;
   nodes.reserve(4 * contacts.size());
   for (const ContactBlock& contact : contacts) nodes.insert(nodes.end(), contact.nodes.begin(), contact.nodes.end());
-  Lists by = indices_by_value(nodes, vertices);
+  IndexLists by = indices_by_value(nodes, vertices);
   lists.weight.reserve(by.item.size());
   for (int& i : by.item) {
     lists.weight.push_back(contacts[i / 4].weights[i % 4]);

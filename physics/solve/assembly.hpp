@@ -27,8 +27,8 @@ struct Elastic {
   std::vector<double> element_damping;  // stiffness damping of the element's cloth; for a joint the mean of its own [s]
   std::vector<double> vertex_damping;   // the same of each vertex
   PairPattern pattern;
-  Lists force_slots;  // of each vertex
-  Lists pair_slots;   // of each pair
+  IndexLists force_slots;  // of each vertex
+  IndexLists pair_slots;   // of each pair
 };
 Elastic make_elastic(const Scene&);
 
