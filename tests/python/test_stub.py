@@ -1,4 +1,4 @@
-"""The type stub says what the extension has: the same names, with the same arguments in the same order."""
+"""The type stub says what the extension has: the same names, with the same arguments and docstrings in the same order."""
 
 import ast
 import pathlib
@@ -30,6 +30,19 @@ def real(thing):
     return [[name for name in re.findall(r"(?:^|, )(\w+):", text) if name != "self"] for text in inner]
 
 
+def stub_docs(body):
+    """Docstrings of functions and methods, one an overload, without breaks of lines."""
+    found = {}
+    for node in body:
+        if isinstance(node, ast.FunctionDef):
+            found.setdefault(node.name, []).append(" ".join((ast.get_docstring(node) or "").split()))
+    return found
+
+
+def real_docs(thing):
+    return [signature[1] for signature in thing.__nb_signature__] if hasattr(thing, "__nb_signature__") else [thing.__doc__]
+
+
 def public(thing):
     return {name for name in vars(thing) if not name.startswith("_")}
 
@@ -49,6 +62,14 @@ def test_scene():
         member = getattr(selvedge.Scene, name)
         if hasattr(member, "__nb_signature__"):
             assert all_arguments == real(member), name
+
+
+def test_docstrings():
+    scene = next(node for node in STUB.body if isinstance(node, ast.ClassDef) and node.name == "Scene")
+    assert ast.get_docstring(scene) == selvedge.Scene.__doc__
+    for body, of in [(STUB.body, _selvedge), (scene.body, selvedge.Scene)]:
+        for name, texts in stub_docs(body).items():
+            assert texts == real_docs(getattr(of, name)), name
 
 
 def test_everything_public_says_what_it_is():
