@@ -331,10 +331,11 @@ TEST_CASE("Keys of scene files: one that has become a constant may be given as i
   CHECK_THROWS_WITH(read_setup(file, {"run.recovery.astray=3"}), Contains("is a constant now"));
 }
 
-TEST_CASE("The scenes in docs/scene.md can be read", "[config]") {
+TEST_CASE("The scenes in docs/scene.md and docs/start.md can be read", "[config]") {
   const Folder folder("config");
-  const std::vector<std::string> blocks = yaml_blocks(whole(page));
+  std::vector<std::string> blocks = yaml_blocks(whole(page));
   REQUIRE(blocks.size() >= 3);
+  std::ranges::copy(yaml_blocks(whole(page.parent_path() / "start.md")), std::back_inserter(blocks));
   const bool data = std::filesystem::exists(fake::open_data() / "diffcloth");
   if (!data) WARN("skipped: the open data is absent, and with it the scenes that use it");
   for (const std::string& block : blocks) {
