@@ -17,7 +17,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long check-install wheel asan asan-core tsan minimal torch format check-format tidy clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare fuzz dev long check-install wheel asan asan-core tsan minimal torch format check-format tidy docs clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -106,6 +106,10 @@ tidy:  ## clang-tidy over the sources of the release build
 	@cmake/install-packages.sh build suitesparse fcl viewer test tidy
 	@$(MAKE) --no-print-directory build/release/configured
 	@git ls-files '*.cpp' ':!tests' | xargs -P $(JOBS) -n 1 clang-tidy -p build/release --quiet --warnings-as-errors='*'
+
+docs:  ## The site of docs/, with references of Python and C++: out/site
+	@cmake/install-packages.sh docs
+	@docs/site/build.sh
 
 clean:  ## Remove what was built; results in out/ stay
 	rm -rf build
