@@ -176,7 +176,7 @@ void write_content(const std::filesystem::path& path, const WeightFile& content,
   const PropertyId creation(H5Pcreate(H5P_FILE_CREATE));
   H5Pset_userblock(creation.id, seal_bytes);
   const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id, H5P_DEFAULT)), path.string()};
-  if (store.file.id < 0) throw Error("cannot make the file", path.string(), "check the folder and who may write there");
+  if (store.file.id < 0) throw Error("cannot write", path_in_place(path).string(), write_cure);
   write_texts(store, "format", {form_name});
   write_texts(store, "version", {content.version});
   write_texts(store, "architecture", {architecture_text(content.architecture)});

@@ -9,6 +9,7 @@
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
+#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -156,7 +157,7 @@ void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& 
   write_numbers("scenes/jittered", result.floors, &CompareFloor::jittered);
   write_numbers("scenes/lost", result.floors, &CompareFloor::lost);
   file.close();
-  std::filesystem::rename(beside, path);
+  rename_file(beside, path);
 }
 
 }  // namespace selvedge

@@ -91,7 +91,7 @@ DrapeTrainSummary train_drapes(const TrainRequest& request) {
   const std::filesystem::path folder =
       request.out.empty() ? std::filesystem::path("out") / "training" / options.name : request.out;
   make_folder(folder);
-  std::filesystem::remove(pause_file(folder));
+  remove_file(pause_file(folder));
   write_file(folder / "config.yaml", drape_training_yaml(options));
   DrapeLessons lessons = make_drape_lessons(options.drapes, options.validation_paths, options.distance.bones);
   DrapeTraining training{{options, std::move(lessons), {}}, {request, options, folder, 0}};
@@ -105,7 +105,7 @@ DrapeTrainSummary train_drapes(const TrainRequest& request) {
   for (const DrapePart& part : parts_of(run.backbone)) summary.parameters += parameter_count(*part.network);
   summary.finished = train_all(training);
   summary.seconds = training.stage.seconds;
-  std::filesystem::remove(pause_file(folder));
+  remove_file(pause_file(folder));
   if (!summary.finished) return summary;
   summary.table = measure_all(training);
   if (!run.distance.layers.empty()) summary.distance = distance_text(options.distance, run.lessons, run.distance);

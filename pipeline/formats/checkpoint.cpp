@@ -8,6 +8,7 @@
 #include "collision/geometry/path_beside.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -171,13 +172,15 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     std::filesystem::remove(beside, ignored);
     throw;
   }
-  std::filesystem::rename(beside, path);
+  rename_file(beside, path);
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
-    throw Error("there is nothing to resume: no checkpoint", path.string(),
-                "run without --resume; a run that ended has none, one that was stopped early may not yet have one");
+    throw Error(
+        "there is nothing to resume: no checkpoint", path.string(),
+        "run without --resume, or with --resume=auto, which also starts; a run that ended has none, nor has one "
+        "that was stopped before its first frame");
   const h5::File file = h5::File::open(path);
   Checkpoint read;
   read_inputs(file, read);

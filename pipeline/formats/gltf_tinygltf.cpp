@@ -16,6 +16,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/library_message.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -115,8 +116,11 @@ class Document {
     } catch (const std::exception& problem) {
       error = problem.what();
     }
+    error = library_message(error);
     std::ranges::replace(error, '\n', ' ');
-    if (!good) throw Error("is no glTF 2.0 that can be read (" + error + ")", file.string(), "export it anew, as .glb");
+    if (!good)
+      throw Error("is no glTF 2.0 that can be read" + (error.empty() ? "" : " (" + error + ")"), file.string(),
+                  "export it anew, as .glb");
     for (const std::string& extension : model.extensionsRequired)
       if (extension != "KHR_mesh_quantization" && extension.find("_materials_") == std::string::npos &&
           extension.find("_texture_") == std::string::npos)

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 #include "pipeline/host/bounds.hpp"
 
 namespace selvedge::h5 {
@@ -113,7 +114,8 @@ Rows select_rows(hid_t dataset, const std::vector<hsize_t>& shape, hsize_t first
 hid_t checked(hid_t result, const std::filesystem::path& file, const std::string& doing) {
   if (result >= 0) return result;
   const std::string reason = reason_of_failure();
-  throw Error("cannot " + doing + (reason.empty() ? "" : " (" + reason + ")"), file.string(), cure_for(reason));
+  throw Error("cannot " + doing + (reason.empty() ? "" : " (" + reason + ")"), path_in_place(file).string(),
+              cure_for(reason));
 }
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -130,7 +132,8 @@ File File::create(const std::filesystem::path& path) {
   silence();
   const Handle access = file_access(), creation = file_creation();
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id(), access.id());
-  return {path, Handle(checked(id, path, "make the file"), H5Fclose)};
+  if (id < 0) throw Error("cannot write (" + reason_of_failure() + ")", path_in_place(path).string(), write_cure);
+  return {path, Handle(id, H5Fclose)};
 }
 
 File File::open(const std::filesystem::path& path) {
@@ -143,7 +146,7 @@ File File::open(const std::filesystem::path& path) {
 void File::move_to(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::rename(path_, path, error);
-  if (error) throw Error("cannot rename to it (" + error.message() + ")", path.string(), "check the folder");
+  if (error) throw Error("cannot write (" + error.message() + ")", path.string(), write_cure);
   path_ = path;
 }
 

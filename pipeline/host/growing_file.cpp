@@ -29,9 +29,7 @@ void GrowingFile::keep() {
   if (stream_ && std::fclose(stream_.release()) != 0 && failed_ == 0) failed_ = errno;
   std::error_code error(failed_, std::generic_category());
   if (!error) std::filesystem::rename(beside_, path_, error);
-  if (error)
-    throw Error("cannot write (" + error.message() + ")", path_.string(),
-                "check that the folder is there and may be written, and that its disk is not full");
+  if (error) throw Error("cannot write (" + error.message() + ")", path_.string(), write_cure);
   kept_ = true;
 }
 

@@ -19,6 +19,18 @@ void make_folder(const std::filesystem::path& path, const std::string& cure) {
   if (error) throw Error("cannot make this folder (" + error.message() + ")", path.string(), cure);
 }
 
+void remove_file(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (error) throw Error("cannot be removed (" + error.message() + ")", path.string(), write_cure);
+}
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) throw Error("cannot write (" + error.message() + ")", to.string(), write_cure);
+}
+
 void write_cached(const std::filesystem::path& file, const std::function<void()>& write) {
   const std::string cure =
       "set XDG_CACHE_HOME to a folder that may be written; bodies and garments by code are kept there";

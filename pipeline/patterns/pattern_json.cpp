@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/library_message.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/patterns/pattern.hpp"
 #include "pipeline/patterns/pattern_check.hpp"
@@ -220,8 +221,7 @@ Pattern pattern_of(const std::string& json, const std::string& file) {
   try {
     parsed = Json::parse(without_nan(json));
   } catch (const Json::exception& error) {
-    const std::string text = error.what();  // begins with the name of the exception, in brackets
-    throw Error("is no JSON: " + text.substr(text.find(' ') + 1), file, form_cure);
+    throw Error("is no JSON: " + library_message(error.what()), file, form_cure);
   }
   return PatternReader{file}.read(parsed);
 }

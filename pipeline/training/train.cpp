@@ -170,7 +170,7 @@ bool run_steps(TrainingRun& run) {
 
 void begin(TrainingRun& run) {
   make_folder(run.folder);
-  std::filesystem::remove(pause_file(run.folder));
+  remove_file(pause_file(run.folder));
   if (run.request.resume) {
     run.trainer = read_training_checkpoint(run.folder / "checkpoint.h5", run.options, run.history);
     run.history.steps = with_columns_of_now(run.history.steps);
@@ -207,7 +207,7 @@ TrainSummary train(const TrainRequest& request) {
   const bool finished = run_steps(run);
   tell(run, true);
   save(run);
-  std::filesystem::remove(pause_file(run.folder));
+  remove_file(pause_file(run.folder));
   return {run.folder, finished, run.trainer->counts, run.history.seconds, run.history.best_step, run.history.best_score,
           run.last};
 }
@@ -220,7 +220,7 @@ bool pause_training(const std::filesystem::path& folder, double seconds) {
   const Clock::time_point asked = Clock::now();
   while (std::filesystem::exists(pause_file(folder))) {
     if (seconds_since(asked) > seconds) {
-      std::filesystem::remove(pause_file(folder));
+      remove_file(pause_file(folder));
       return false;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));

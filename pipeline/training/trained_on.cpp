@@ -8,6 +8,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/kept_rows.hpp"
+#include "pipeline/host/library_message.hpp"
 
 namespace selvedge {
 namespace {
@@ -142,8 +143,8 @@ TrainedOn read_trained_on(const std::string& json, const std::string& where) {
                            items_of(person.at("wear")), items_of(person.at("clips"))});
     return on;
   } catch (const std::exception& problem) {
-    throw Error(fmt::format("holds no record of what the network was trained on ({})", problem.what()), where,
-                "train or copy the weights again");
+    throw Error(fmt::format("holds no record of what the network was trained on ({})", library_message(problem.what())),
+                where, "train or copy the weights again");
   }
 }
 
