@@ -58,14 +58,11 @@ std::string on_one_line(const std::string& error) {
   return end == std::string::npos ? error : error.substr(0, end) + "; " + error.substr(end + 3);
 }
 
-// An error tells whose overrides are wrong.
-Setup read_as(const CompareSetting& setting, const CompareScene& scene, bool short_form, const Kinds& kinds) {
-  try {
-    return read_compared(scene, short_form, setting.overrides, kinds);
-  } catch (const Error& error) {
-    throw Error(error.problem(), "setting `" + setting.name + "` on scene `" + scene.name + "`: " + error.where(),
-                error.cure());
-  }
+// `whose`: the reference's or a setting's overrides, which an error names with the comparison file.
+Setup read_as(const Comparison& comparison, const std::string& whose, const CompareScene& scene, bool short_form,
+              const std::vector<std::string>& overrides) {
+  return read_for(comparison.file.string() + ": " + whose + " on scene `" + scene.name + "`",
+                  [&] { return read_compared(scene, short_form, overrides, comparison.kinds); });
 }
 
 // Reads every setup and makes every stepper once, so that what is wrong is said before hours of work.
@@ -75,7 +72,7 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
   work.scene = &scene;
   work.folder = request.out / "parts" / scene.name;
   make_folder(work.folder);
-  const Setup reference = read_compared(scene, request.short_form, comparison.reference, comparison.kinds);
+  const Setup reference = read_as(comparison, "the reference", scene, request.short_form, comparison.reference);
   work.keys.program = program;
   work.keys.reference = fmt::format("{} {:016x} {} {} {} {}", program, hash_of(reference.config), scene.states,
                                     scene.horizon, comparison.jitter, joined(comparison.algebraic));
@@ -87,7 +84,7 @@ SceneWork open_scene(const CompareRequest& request, const Comparison& comparison
       work.keys.settings.emplace_back();
       continue;
     }
-    Setup setup = read_as(setting, scene, request.short_form, comparison.kinds);
+    Setup setup = read_as(comparison, "setting `" + setting.name + "`", scene, request.short_form, setting.overrides);
     work.keys.settings.push_back(fmt::format(
         "{} {:016x} {:016x} {} {} {} {}", program, hash_of(setup.config), hash_of(whole_file(setting.weights)),
         Eigen::nbThreads(), comparison.judged_frames, comparison.limits.pairs, comparison.limits.seconds));
@@ -126,7 +123,8 @@ bool find_errors(const CompareRequest& request, const Comparison& comparison, Sc
   const auto need_reference = [&] {
     if (reference) return true;
     const auto started = Clock::now();
-    reference = make_reference(comparison, *work.scene, request.short_form, request.stop);
+    reference = read_for(comparison.file.string() + ": scene `" + work.scene->name + "`",
+                         [&] { return make_reference(comparison, *work.scene, request.short_form, request.stop); });
     if (!reference) return false;
     work.floor = reference->floor;
     write_file(work.folder / "floor.json", part_json(work.floor, work.keys.reference));

@@ -50,7 +50,8 @@ Setup read_run(const StabilityRequest& request, const StabilityCase& one, const 
     overrides.push_back("run.learned.weights=" +
                         quoted_yaml(std::filesystem::absolute(weights_of(request, run)).string()));
   overrides.insert(overrides.end(), run.overrides.begin(), run.overrides.end());
-  return read_setup(one.scene, overrides, request.kinds);
+  return read_for(fmt::format("{}: run `{}` of case `{}`", request.suite.string(), run.name, one.name),
+                  [&] { return read_setup(one.scene, overrides, request.kinds); });
 }
 
 int frames_of(const RunSummary& summary, Verdict verdict) {

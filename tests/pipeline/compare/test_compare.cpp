@@ -230,7 +230,7 @@ TEST_CASE("A comparison that cannot be made says why", "[compare]") {
   CHECK_THROWS_WITH(refused(scene + "settings: []\n"), Contains("settings") && Contains("empty"));
   CHECK_THROWS_WITH(refused(scene + "settings: [{name: a}, {name: a}]\n"), Contains("name `a`"));
   CHECK_THROWS_WITH(refused(scene + "settings: [{name: a, set: [run.sbsteps=3]}]\n"),
-                    Contains("setting `a` on scene `hanging`: --set run.sbsteps=3") && Contains("substeps"));
+                    Contains(".yaml: setting `a` on scene `hanging`: --set run.sbsteps=3") && Contains("substeps"));
   CHECK_THROWS_WITH(refused(scene + "settings: [{name: a}]\nrepeat: 2\n"), Contains("repeats"));
   CHECK_THROWS_WITH(refused("scenes: [{file: hanging.yaml, horizon: 9}]\nsettings: [{name: a}]\n"),
                     Contains("horizon") && Contains("8 frames"));

@@ -129,6 +129,11 @@ TEST_CASE("stability: a faulty suite is named by file and line", "[stability]") 
   request.suite = suite_file;
   request.cases = {"gravitas"};
   CHECK_THROWS_WITH(stability(request), Contains("there is no case") && Contains("gravity"));
+  fake::write(folder, "scene.yaml", falling_sheet);
+  request.suite = fake::write(
+      folder, "b.yaml", "cases: [{name: a, scene: scene.yaml, runs: [{name: b, set: [cloths.sheet.materal=2]}]}]");
+  request.cases = {};
+  CHECK_THROWS_WITH(stability(request), Contains("b.yaml: run `b` of case `a`: --set cloths.sheet.materal=2"));
 }
 
 }  // namespace selvedge::test_stability
