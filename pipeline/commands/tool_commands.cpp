@@ -187,7 +187,7 @@ RunCommand fit_command(CLI::App& command) {
 
 RunCommand export_command(CLI::App& command) {
   const auto request = std::make_shared<ExportRequest>();
-  command.add_option("trajectory", request->trajectory, "run.h5")->required();
+  command.add_option("trajectory", request->trajectory, "trajectory (.h5), or the folder of a run")->required();
   command.add_option("--format", request->format, export_format_list());
   command.add_option("--out", request->out, "folder")->default_val("export");
   command.add_flag("--obstacles", request->obstacles, "also the obstacles");
@@ -209,7 +209,7 @@ RunCommand export_command(CLI::App& command) {
 
 RunCommand view_command(CLI::App& command) {
   const auto arguments = std::make_shared<ViewArguments>();
-  command.add_option("runs", arguments->runs, "trajectories, shown side by side")->required();
+  command.add_option("runs", arguments->runs, "trajectories (.h5) or folders of runs, shown side by side")->required();
   command.add_option("--out", arguments->out, "HTML file");
   return [arguments](bool json) {
     write_view(arguments->runs, arguments->out);

@@ -27,6 +27,9 @@ class TrajectoryWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+// The trajectory of a run: the file itself, or that in the run's folder.
+std::filesystem::path trajectory_file(const std::filesystem::path& file_or_folder);
+
 // Also reads a file that is being written, or whose writer was killed. Throws Error for a file that is no trajectory.
 class TrajectoryReader {
  public:

@@ -129,6 +129,11 @@ struct TrajectoryReader::Impl {
   }
 };
 
+std::filesystem::path trajectory_file(const std::filesystem::path& file_or_folder) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(file_or_folder, ignored) ? file_or_folder / "run.h5" : file_or_folder;
+}
+
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw Error("there is no such file", path.string(), "check the path");
   impl_ = std::make_unique<Impl>(path);

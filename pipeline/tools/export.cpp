@@ -107,8 +107,10 @@ std::vector<std::filesystem::path> export_trajectory(const ExportRequest& reques
   const auto format = std::ranges::find(export_formats, request.format, &ExportFormat::name);
   if (format == std::end(export_formats))
     throw Error("unknown format `" + request.format + "`", "--format", "known: " + export_format_list());
-  ExportedRun run(request, format->each_cloth);
-  return format->write(run.read_so_often(format->reads(run.surfaces(), run.frames())), request);
+  ExportRequest of_file = request;
+  of_file.trajectory = trajectory_file(request.trajectory);
+  ExportedRun run(of_file, format->each_cloth);
+  return format->write(run.read_so_often(format->reads(run.surfaces(), run.frames())), of_file);
 }
 
 std::string export_format_list() {

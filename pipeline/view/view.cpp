@@ -17,7 +17,7 @@ std::string run_name(const std::filesystem::path& file) {
 }  // namespace
 
 ViewRun open_view_run(const std::filesystem::path& path) {
-  const std::filesystem::path file = std::filesystem::is_directory(path) ? path / "run.h5" : path;
+  const std::filesystem::path file = trajectory_file(path);
   const auto reader = std::make_shared<TrajectoryReader>(file);
   return {run_name(file), reader->info(), reader->frame_count(), [reader](int index) { return reader->frame(index); }};
 }

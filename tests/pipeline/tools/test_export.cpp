@@ -62,6 +62,14 @@ TEST_CASE("a point cache holds every frame as floats after its header") {
   REQUIRE(last == fake::frame(scene, 3).x);
 }
 
+TEST_CASE("the folder of a run is exported as its trajectory is") {
+  const fake::Folder folder("export_folder");
+  std::filesystem::rename(write_run(folder, fake::scene(), 2), folder.path / "run.h5");
+  const auto files = export_trajectory({folder.path, "glb", folder.path / "out", false, {}});
+  REQUIRE(files.size() == 1);
+  REQUIRE(files[0] == folder.path / "out" / "run.glb");
+}
+
 TEST_CASE("an unknown format is refused with those that are known") {
   const fake::Folder folder("export_unknown");
   const std::filesystem::path run = write_run(folder, fake::scene(), 1);
