@@ -16,6 +16,8 @@
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/prepare.hpp"
+#include "pipeline/run/resume.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/make_stepper.hpp"
@@ -38,7 +40,7 @@ struct SceneArguments {
 struct SimulateArguments {
   SceneArguments scene;
   std::optional<std::filesystem::path> out;  // otherwise out/NAME-OF-SCENE
-  bool resume = false;
+  std::string resume;                        // empty, "true", or "auto"
   bool view = true;
   bool cache = true;
 };
@@ -71,11 +73,8 @@ std::string page_text(const std::filesystem::path& out, const RunSummary& summar
   return trouble ? "not made: " + *trouble : (out / "view.html").string();
 }
 
-// Whether all that the scene states came true, with a line each. A resumed run has not seen its first frames.
-bool report_outcome(const std::vector<Outcome>& outcomes, const std::vector<OutcomeResult>& results, std::ostream& to) {
-  for (std::size_t k = 0; k < outcomes.size(); ++k)
-    to << fmt::format("{:<20}{}\n", k == 0 ? "outcome" : "", outcome_text(outcomes[k], results[k]));
-  return all_came_true(results);
+std::string trajectory_line(const std::filesystem::path& out) {
+  return fmt::format("{:<20}{}\n", "trajectory", (out / "run.h5").string());
 }
 
 // A cache that cannot be written costs the next run time, and this one nothing.
@@ -98,9 +97,13 @@ int simulate(const SimulateArguments& arguments, bool json) {
   const std::filesystem::path out = folder_for(arguments, setup);
   make_folder(out);
   const FolderLock lock(out);
+  const bool chooses = arguments.resume == "auto";
+  if (const auto ended = chooses ? read_ended(out, run_inputs(setup)) : std::nullopt)
+    return end_command(json, ended->text + trajectory_line(out), ended->summary, ended->clean);
+  const bool resumes = chooses ? std::filesystem::exists(out / "checkpoint.h5") : !arguments.resume.empty();
   std::optional<Start> start;
-  if (!arguments.resume) start = prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted);
-  if (!arguments.resume && !start) {
+  if (!resumes) start = prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted);
+  if (!resumes && !start) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
@@ -109,24 +112,20 @@ int simulate(const SimulateArguments& arguments, bool json) {
   request.locked = true;
   request.progress = &progress;
   request.stop = request.interrupt = InterruptWatch::interrupted;
-  OutcomeWatch outcome(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps);
-  request.observe = [&](const FrameEvent& event) { outcome(event.state, event.drive); };
   RunSummary summary;
   try {
     const StopScope scope(request.interrupt);
-    outcome(start ? start->state : setup.initial, setup.drive_at(0));
     summary = start ? run_scene(setup, *start, *stepper, request) : resume_scene(setup, *stepper, request);
   } catch (const Stopped&) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
   keep_for_later(setup);
-  people(json) << summary_text(summary) << fmt::format("{:<20}{}\n", "trajectory", (request.out / "run.h5").string());
+  people(json) << summary_text(summary) << trajectory_line(request.out);
   if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", page_text(request.out, summary));
-  const bool came_true = arguments.resume || report_outcome(setup.outcomes, outcome.results(), people(json));
-  if (summary.end == RunEnd::interrupted) people(json) << "go on with --resume and the same arguments\n";
-  if (json) std::cout << summary_json(summary);
-  return is_clean(summary) && came_true ? 0 : 1;
+  const std::string advice =
+      summary.end == RunEnd::interrupted ? "go on with --resume and the same arguments\n" : std::string();
+  return end_command(json, advice, summary_json(summary), is_clean(summary));
 }
 
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
@@ -148,7 +147,10 @@ RunCommand simulate_command(CLI::App& command) {
   add_scene_options(command, arguments->scene);
   command.add_option("--out", arguments->out,
                      "folder for the results (the scene's output.folder, or out/NAME-OF-SCENE)");
-  command.add_flag("--resume", arguments->resume, "go on from the checkpoint of an interrupted run");
+  command
+      .add_flag("--resume", arguments->resume,
+                "go on from the checkpoint of an interrupted run; auto: or start, or report the run that has ended")
+      ->check(CLI::IsMember({"true", "auto"}));
   command.add_flag("!--no-view", arguments->view, "do not make the page");
   command.add_flag("!--no-cache", arguments->cache, "compute soft tissue anew, and do not keep it");
   return [arguments](bool json) { return simulate(*arguments, json); };

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/read_file.hpp"
 #include "pipeline/run/memory_forms.hpp"
+#include "pipeline/run/run_inputs_yaml.hpp"
 
 namespace selvedge {
 namespace {
@@ -161,6 +165,28 @@ ResumedRun read_resumed(const std::filesystem::path& folder, const Setup& setup,
            "is of another scene: what code makes, or the program keeps in its cache, or a file that another file names "
            "has changed since the run began");
   return {std::move(checkpoint.state), inputs, std::move(reader)};
+}
+
+std::optional<EndedRun> read_ended(const std::filesystem::path& folder, const RunInputs& inputs) {
+  const std::filesystem::path file = folder / "summary.json", trajectory = folder / "run.h5";
+  if (!std::filesystem::exists(file)) return {};
+  EndedRun ended{read_text_file(file, "summary")};
+  nlohmann::json json = nlohmann::json::parse(ended.summary, nullptr, false);
+  if (!json.is_object() || !json.contains("end")) refuse(file, "end", "is missing: this is no summary of a run");
+  if (json["end"] == "interrupted") return {};
+  check_config(trajectory, TrajectoryReader(trajectory).info().config, inputs.config);
+  const std::string hash = fmt::format("{:016x}", hash_of_inputs(inputs));
+  if (json.value("inputs_hash", nlohmann::json()) != hash)
+    refuse(file, "inputs_hash",
+           "is not that of the files of the scene: they have changed, or it is of another version");
+  ended.clean = json.value("clean", nlohmann::json()) == true;
+  LabelLines add{20};
+  add("ended before", fmt::format("{}, {} of {} frames, {}", json["end"].get<std::string>(), json["frames"].dump(),
+                                  json["frames_wanted"].dump(), ended.clean ? "clean" : "not clean"));
+  for (nlohmann::json& outcome : json["outcomes"])
+    add("outcome", outcome["name"].get<std::string>() + (outcome["came_true"] == true ? ": yes" : ": no"));
+  ended.text = add.text;
+  return ended;
 }
 
 Frame resumed_frame(const ResumedRun& run, int index, const std::filesystem::path& folder) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -19,6 +21,17 @@ struct ResumedRun {
 // each other. Throws Error with file, field, its value and the scene's: for nothing to resume, another configuration,
 // an input file that has changed, arrays of other types, shapes or lengths, and frames of another run.
 ResumedRun read_resumed(const std::filesystem::path& folder, const Setup&, const StepperTraits&, const RunInputs&);
+
+// A run that ended by itself, as its summary.json says.
+struct EndedRun {
+  std::string summary = {};  // that file
+  std::string text = {};     // for people
+  bool clean = false;
+};
+
+// The run in the folder if it has ended by itself; absent: there is none, or it was stopped. Throws Error, as
+// read_resumed does, where it was made under another configuration or of other inputs.
+std::optional<EndedRun> read_ended(const std::filesystem::path& folder, const RunInputs& inputs);
 
 // Throws Error, naming the checkpoint's field and the input, if the files with which a run began are not those that are
 // read now. `reader`: what reads them, such as "the scene".

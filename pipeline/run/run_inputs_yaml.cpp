@@ -134,4 +134,15 @@ std::vector<InputFile> hashed_files(const std::vector<std::string>& texts, const
 
 RunInputs run_inputs(const Setup& setup) { return {setup.config, input_files(setup), scene_hash(setup)}; }
 
+std::uint64_t hash_of_inputs(const RunInputs& inputs) {
+  ArraysHash all;
+  all.add(inputs.config.data(), inputs.config.size());
+  for (const InputFile& file : inputs.files) {
+    all.add(file.name.data(), file.name.size());
+    all.add(&file.hash, sizeof file.hash);
+  }
+  all.add(&inputs.scene, sizeof inputs.scene);
+  return all.hash;
+}
+
 }  // namespace selvedge

@@ -1,5 +1,6 @@
 #include "pipeline/run/run_scene.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "collision/geometry/stop_scope.hpp"
@@ -44,6 +45,7 @@ struct Recorder {
   TrajectoryWriter writer;
   EnergyTerms terms;
   std::vector<WornCloth> worn = setup.worn;
+  OutcomeWatch outcome{setup.scene, setup.outcomes, setup.run.frames / setup.run.fps};
   int next = 0;
   Clock::time_point last_checkpoint = Clock::now();
 
@@ -64,6 +66,7 @@ struct Recorder {
 
   bool operator()(const FrameEvent& event) {
     add(record_frame(setup.scene, terms, event));
+    outcome(event.state, event.drive);
     if (request.observe) request.observe(event);
     if (request.progress) request.progress->frame(event.state.frame);
     const bool stop = request.stop && request.stop();
@@ -72,12 +75,33 @@ struct Recorder {
   }
 };
 
-// Copies frames up to the checkpoint's from the file of the interrupted run.
+// The state of a kept frame, as far as outcomes are measured in it. A vertex of an obstacle that is where it was
+// wanted, but for the rounding of the file, is there.
+State seen_state(const Frame& frame, int index, const Drive& drive) {
+  State state;
+  state.time = frame.time;
+  state.frame = index;
+  state.x = frame.x.cast<double>();
+  for (std::size_t k = 0; k < frame.obstacles.size(); ++k) {
+    const PointsF& kept = frame.obstacles[k];
+    const Points& wanted = drive.obstacles[k];
+    Points& x = state.obstacles.emplace_back(kept.cast<double>());
+    for (Eigen::Index i = 0; i < std::min(kept.rows(), wanted.rows()); ++i)
+      if (wanted.row(i).cast<float>() == kept.row(i)) x.row(i) = wanted.row(i);
+  }
+  return state;
+}
+
+// Copies frames up to the checkpoint's from the file of the interrupted run, and judges them as if they were just made.
 void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder, Recorder& recorder) {
   try {
     for (int i = 0; i <= resumed.state.frame; ++i) {
       check_stop();
-      recorder.add(resumed_frame(resumed, i, folder));
+      const Frame frame = resumed_frame(resumed, i, folder);
+      recorder.add(frame);
+      if (recorder.setup.outcomes.empty()) continue;
+      const Drive drive = recorder.setup.drive_at(frame.time);
+      recorder.outcome(i < resumed.state.frame ? seen_state(frame, i, drive) : resumed.state, drive);
     }
   } catch (...) {
     std::filesystem::remove(folder / "resumed.h5");
@@ -87,9 +111,9 @@ void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder,
 
 // Removes results of an earlier run, so that they are not taken for this run's if it fails.
 void remove_results(const std::filesystem::path& folder, bool resumed) {
-  for (const char* name : {"summary.json", "run.xdmf", "view.html"}) std::filesystem::remove(folder / name);
+  for (const char* name : {"summary.json", "run.xdmf", "view.html"}) remove_file(folder / name);
   if (resumed) return;
-  for (const char* name : {"run.h5", "checkpoint.h5"}) std::filesystem::remove(folder / name);
+  for (const char* name : {"checkpoint.h5", "run.h5"}) remove_file(folder / name);
 }
 
 void finish(RunSummary& summary, const StepReport& last, int frame) {
@@ -128,14 +152,18 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   // A resumed run writes to another file until all kept frames of the old one are copied.
   const std::filesystem::path first_file = start ? file : request.out / "resumed.h5";
   RunSummary summary = empty_summary(setup, start ? start->prepared : setup.prepared, stepper);
+  summary.inputs_hash = hash_of_inputs(inputs);
   const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
   Recorder recorder{
       setup, request, summary, inputs, TrajectoryWriter(first_file, info), energy_terms(setup.scene, stepper.traits())};
   if (start) {
-    recorder.add(record_initial(setup.scene, recorder.terms, state, setup.drive_at(state.time)));
+    const Drive drive = setup.drive_at(state.time);
+    recorder.add(record_initial(setup.scene, recorder.terms, state, drive));
+    recorder.outcome(state, drive);
+    recorder.checkpoint(state);  // so that a run that is killed soon is resumed, too
   } else {
     copy_frames(resumed, request.out, recorder);
-    std::filesystem::rename(first_file, file);
+    rename_file(first_file, file);
   }
 
   if (request.progress) request.progress->begin(state.frame, setup.run.frames);
@@ -147,8 +175,11 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   recorder.writer.close();
   for (WornCloth& one : recorder.worn)
     if (one.watch.left_in >= 0) summary.slid_off.push_back(std::move(one.watch));
+  summary.outcomes = recorder.outcome.results();
+  for (std::size_t k = 0; k < setup.outcomes.size(); ++k)
+    summary.outcome_lines.push_back(outcome_text(setup.outcomes[k], summary.outcomes[k]));
   finish(summary, last, state.frame);
-  if (summary.end == RunEnd::finished) std::filesystem::remove(saved);
+  if (summary.end == RunEnd::finished) remove_file(saved);
   write_xdmf(file);
   write_file(request.out / "summary.json", summary_json(summary));
   return summary;

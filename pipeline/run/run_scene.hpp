@@ -21,9 +21,9 @@ struct RunRequest {
 };
 
 // Simulates a scene from its start into a folder: run.h5 (trajectory), run.xdmf, summary.json, config.yaml (whose
-// `folder` is the scene's), and checkpoint.h5 until the run has finished. A rejected step is recorded as a frame with
-// the last accepted positions and ends the run. Throws Error if files cannot be written, or another process is running
-// into the folder.
+// `folder` is the scene's), and checkpoint.h5 from the first frame until the run has finished. A rejected step is
+// recorded as a frame with the last accepted positions and ends the run. Throws Error if files cannot be written, or
+// another process is running into the folder.
 RunSummary run_scene(const Setup&, const Start&, Stepper&, const RunRequest&);
 
 // Continues from the checkpoint of an interrupted run in the folder. Throws the same, and what read_resumed does.

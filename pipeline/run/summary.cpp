@@ -6,6 +6,7 @@
 #include <array>
 #include <numeric>
 
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 
@@ -115,6 +116,9 @@ void put_totals(const RunSummary& s, nlohmann::ordered_json& json) {
 
 void add_frame(RunSummary& summary, int index, const Frame& frame) {
   const StepReport& report = frame.report;
+  const std::string_view positions(reinterpret_cast<const char*>(frame.x.data()),
+                                   sizeof(float) * static_cast<std::size_t>(frame.x.size()));
+  summary.positions_hash = hash_of(positions, index > 0 ? summary.positions_hash : hash_of(""));
   if (index > 0) {
     if (report.status == StepStatus::accepted) ++summary.frames;
     summary.frame_seconds.push_back(frame.seconds);
@@ -165,7 +169,7 @@ double worst_milliseconds(const RunSummary& summary) {
 bool is_clean(const RunSummary& summary) {
   return summary.end == RunEnd::finished && summary.pairs == 0 && summary.worst_inside == 0 && summary.nonfinite == 0 &&
          total_of(summary.fields, "passed_through").sum == 0 && total_of(summary.fields, "jumped").sum == 0 &&
-         total_of(summary.fields, "cut_out").at_end == 0 && summary.slid_off.empty();
+         total_of(summary.fields, "cut_out").at_end == 0 && summary.slid_off.empty() && all_came_true(summary.outcomes);
 }
 
 std::string summary_json(const RunSummary& s) {
@@ -175,6 +179,12 @@ std::string summary_json(const RunSummary& s) {
   nlohmann::ordered_json slid_off = nlohmann::ordered_json::array();
   for (const WornWatch& one : s.slid_off)
     slid_off.push_back({{"garment", one.garment}, {"body", one.body}, {"frame", one.left_in}});
+  nlohmann::ordered_json outcomes = nlohmann::ordered_json::array();
+  for (const OutcomeResult& one : s.outcomes)
+    outcomes.push_back({{"name", one.name},
+                        {"came_true", one.came_true},
+                        {"value", one.frame < 0 ? nlohmann::ordered_json(nullptr) : number_or_null(one.value)},
+                        {"frame", one.frame}});
   nlohmann::ordered_json json = {
       {"program_version", s.program_version},
       {"scene", s.scene},
@@ -185,6 +195,7 @@ std::string summary_json(const RunSummary& s) {
       {"end", end_name(s.end)},
       {"reason", s.reason},
       {"clean", is_clean(s)},
+      {"outcomes", outcomes},
       {"frames_wanted", s.frames_wanted},
       {"frames", s.frames},
       {"ms_per_frame", {{"mean", mean_milliseconds(s)}, {"median", median_milliseconds(s)}, {"by_phase", phases}}},
@@ -202,6 +213,8 @@ std::string summary_json(const RunSummary& s) {
       {"slid_off", slid_off},
       {"held_fraction", held_fraction(s)}};
   put_totals(s, json);
+  json["positions_hash"] = fmt::format("{:016x}", s.positions_hash);
+  json["inputs_hash"] = fmt::format("{:016x}", s.inputs_hash);
   json["left_out"] = left_out;
   json["warnings"] = s.warnings;
   return json_text(json);
@@ -261,6 +274,7 @@ std::string summary_text(const RunSummary& s) {
   add_doubtful(s, add);
   add("left out", out.empty() ? "nothing" : out);
   for (const std::string& warning : s.warnings) add("warning", warning);
+  for (const std::string& line : s.outcome_lines) add(&line == &s.outcome_lines.front() ? "outcome" : "", line);
   return add.text;
 }
 

@@ -8,6 +8,7 @@
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/garments/worn_part.hpp"
 #include "pipeline/reports/field_total.hpp"
+#include "pipeline/scene/outcome.hpp"
 
 namespace selvedge {
 
@@ -38,6 +39,10 @@ struct RunSummary {
     int most = 0, frames = 0, first_frame = -1;  // triangles in the worst frame; number of frames; -1: none
   };
   std::vector<SwitchedOff> switched_off;  // of each obstacle
+  std::vector<OutcomeResult> outcomes;    // of what the scene states
+  std::vector<std::string> outcome_lines;  // the same for people
+  std::uint64_t positions_hash = 0;        // of the cloth's positions as written, all frames so far
+  std::uint64_t inputs_hash = 0;           // of all that the run was made of
   std::vector<PlanLine> left_out;
   std::vector<std::string> warnings;
 };
@@ -53,8 +58,8 @@ double median_milliseconds(const RunSummary&);
 double worst_milliseconds(const RunSummary&);
 
 // True if the run reached its end, every frame is finite, no triangles intersect, no vertices are inside obstacles,
-// nothing passed through in any motion, no obstacle jumped, no triangles are still cut out, and no garment has left its
-// body.
+// nothing passed through in any motion, no obstacle jumped, no triangles are still cut out, no garment has left its
+// body, and every outcome that the scene states has come true.
 bool is_clean(const RunSummary&);
 
 std::string summary_json(const RunSummary&);

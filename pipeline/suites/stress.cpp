@@ -21,11 +21,9 @@ constexpr double most_held = 0.01;           // share of vertex-steps: frozen cl
 
 // What the frames of a run show beyond its summary.
 struct StressWatch {
-  OutcomeWatch outcome;
   int wanted_frames = 0;
 
   void operator()(const FrameEvent& event) {
-    outcome(event.state, event.drive);
     const CollisionReport& collision = event.report.collision;
     wanted_frames += collision.pairs_wanted > 0 || collision.depth_wanted > 0;
   }
@@ -59,8 +57,7 @@ bool obstacles_must_lag(const Setup& setup) {
   });
 }
 
-std::vector<std::string> failures_of(const StressRow& row, const RunSummary& summary, const Setup& setup,
-                                     const std::vector<OutcomeResult>& results) {
+std::vector<std::string> failures_of(const StressRow& row, const RunSummary& summary, const Setup& setup) {
   std::vector<std::string> all;
   const auto fail_if = [&](bool bad, std::string why) {
     if (bad) all.push_back(std::move(why));
@@ -79,8 +76,8 @@ std::vector<std::string> failures_of(const StressRow& row, const RunSummary& sum
             fmt::format("obstacles lag {:.2g} m where there is room", row.obstacle_lag));
     fail_if(row.wanted_frames > 0, fmt::format("{} frames touch the wanted positions", row.wanted_frames));
   }
-  for (std::size_t k = 0; k < results.size(); ++k)
-    fail_if(!results[k].came_true, outcome_text(setup.outcomes[k], results[k]));
+  for (std::size_t k = 0; k < summary.outcomes.size(); ++k)
+    fail_if(!summary.outcomes[k].came_true, summary.outcome_lines[k]);
   return all;
 }
 
@@ -105,8 +102,7 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   if (!start) return {};
   row.jitter = jitter_start(setup, request.jitter, row.seed, start->state);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
-  StressWatch watch{OutcomeWatch(setup.scene, setup.outcomes, setup.run.frames / setup.run.fps)};
-  watch.outcome(start->state, setup.drive_at(0));
+  StressWatch watch;
   RunRequest run;
   run.out = repeat.run_folder();
   run.checkpoint_seconds = 1e9;
@@ -131,9 +127,8 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.held_share = held_fraction(summary);
   row.obstacle_lag = total_of(summary.fields, "obstacle_lag").largest;
   row.max_stretch = summary.max_stretch;
-  const std::vector<OutcomeResult> results = watch.outcome.results();
-  for (std::size_t k = 0; k < results.size(); ++k) row.outcome.push_back(outcome_text(setup.outcomes[k], results[k]));
-  row.failures = failures_of(row, summary, setup, results);
+  row.outcome = summary.outcome_lines;
+  row.failures = failures_of(row, summary, setup);
   row.seconds = seconds_since(started);
   return row;
 }

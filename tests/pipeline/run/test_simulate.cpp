@@ -179,6 +179,62 @@ TEST_CASE("an interrupted run that is resumed gives the same bits") {
   REQUIRE_THROWS_AS(run(setup, folder.path / "parts", 1 << 30, true), Error);
 }
 
+TEST_CASE("a resumed run is judged as one that was never stopped, with the same hashes") {
+  const fake::Folder folder("judged");
+  Setup setup = fake::setup();
+  Outcome still{"obstacles are where they are wanted", Lag{}};
+  still.from = 0;
+  still.most = 0;
+  Outcome falls{"falls", Drift{{0, 1}}};
+  falls.from = 0;
+  falls.least = 0.01;
+  falls.once = true;
+  Outcome flies{"flies", Drift{{0}}};
+  flies.least = 100;
+  setup.outcomes = {still, falls, flies};
+  const RunSummary whole = run(setup, folder.path / "whole");
+  REQUIRE(run(setup, folder.path / "parts", 9).end == RunEnd::interrupted);
+  const RunSummary parts = run(setup, folder.path / "parts", 1 << 30, true);
+  REQUIRE(parts.end == RunEnd::finished);
+  REQUIRE(parts.outcomes.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    INFO(parts.outcome_lines[k]);
+    CHECK(parts.outcomes[k].came_true == (k < 2));
+    CHECK(parts.outcomes[k].frame == whole.outcomes[k].frame);
+    CHECK(parts.outcomes[k].value == Approx(whole.outcomes[k].value).margin(1e-6));
+  }
+  CHECK(parts.positions_hash == whole.positions_hash);
+  CHECK_FALSE(is_clean(parts));  // one outcome did not come true
+  const nlohmann::json json = read_json(folder.path / "parts" / "summary.json");
+  CHECK(json["clean"] == false);
+  CHECK(json["outcomes"][2]["name"] == "flies");
+  CHECK(json["outcomes"][2]["came_true"] == false);
+  CHECK(json["positions_hash"] == read_json(folder.path / "whole" / "summary.json")["positions_hash"]);
+  setup.initial.x(3, 1) += 0.01;
+  CHECK(run(setup, folder.path / "other").positions_hash != whole.positions_hash);
+}
+
+TEST_CASE("a run that is killed soon after its start is resumed") {
+  const fake::Folder folder("killed_soon");
+  const Setup setup = fake::setup();
+  fake::FallingStepper stepper;
+  RunRequest request;
+  request.out = folder.path;
+  request.observe = [](const FrameEvent& event) {
+    if (event.state.frame == 2) throw Error("as good as a kill", "frame 2", "");
+  };
+  REQUIRE_THROWS_AS(run_scene(setup, *prepare(setup), stepper, request), Error);
+  REQUIRE(read_checkpoint(folder.path / "checkpoint.h5").state.frame == 0);
+  CHECK(run(setup, folder.path, 1 << 30, true).end == RunEnd::finished);
+}
+
+TEST_CASE("what cannot be removed from the folder of a run is named with its cure") {
+  const fake::Folder folder("not_removed");
+  std::filesystem::create_directories(folder.path / "summary.json" / "inner");
+  REQUIRE_THROWS_WITH(run(fake::setup(), folder.path),
+                      Catch::Contains("summary.json: cannot be removed") && Catch::Contains("may be written"));
+}
+
 TEST_CASE("a run is resumed only under its own configuration") {
   const fake::Folder folder("other_config");
   Setup setup = fake::setup();
