@@ -1,12 +1,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <new>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/library_message.hpp"
 #include "pipeline/host/process_threads.hpp"
 #include "pipeline/host/version.hpp"
 
@@ -48,6 +52,24 @@ std::string refusal(const CLI::App& app, const CLI::ParseError& problem, int arg
   return "selvedge: " + std::string(error.what()) + "\n";
 }
 
+// What ended a command, in the form of every other error. `word`: the command.
+Error error_of(const std::exception& problem, const std::string& word) {
+  if (const auto* error = dynamic_cast<const Error*>(&problem)) return *error;
+  if (dynamic_cast<const std::bad_alloc*>(&problem))
+    return {"needs more memory than there is", word,
+            "give it fewer vertices or smaller files at a time, or more memory"};
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&problem))
+    return {"cannot be used (" + file->code().message() + ")", file->path1().string(), write_cure};
+  return {library_message(problem.what()), word, "see whether its files are what docs/commands.md asks for"};
+}
+
+// The status, unless what the command has printed could not be written.
+int status_of_output(int status) {
+  if (std::cout.flush()) return status;
+  std::cerr << "selvedge: " << Error("cannot be written in full", "standard output", write_cure).what() << "\n";
+  return 2;
+}
+
 }  // namespace
 
 // Exit status: 0 well, 1 the result is not clean, 2 bad input or a missing package.
@@ -60,13 +82,13 @@ int main(int argc, char** argv) {
   add_commands(app, chosen);
   try {
     app.parse(argc, argv);
-    return chosen();
+    return status_of_output(chosen());
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // help or version, which it prints
+    if (error.get_exit_code() == 0) return status_of_output(app.exit(error));  // help or version
     std::cerr << refusal(app, error, argc, argv);
     return 2;
   } catch (const std::exception& error) {
-    std::cerr << "selvedge: " << error.what() << "\n";
+    std::cerr << "selvedge: " << error_of(error, argc > 1 ? argv[1] : "the command line").what() << "\n";
     return 2;
   }
 }

@@ -1,5 +1,6 @@
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -25,11 +26,13 @@ std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-Ended selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "") {
-  const std::filesystem::path out = folder.path / "stdout", err = folder.path / "stderr";
+Ended selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "",
+                       const std::string& into = "") {
+  const std::filesystem::path out = into.empty() ? folder.path / "stdout" : std::filesystem::path(into),
+                              err = folder.path / "stderr";
   const std::string command = before + tested_program() + " " + arguments + " >" + out.string() + " 2>" + err.string();
   const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, into.empty() ? read_text(out) : "", read_text(err)};
 }
 
 void write_scene(const fake::Folder& folder) {
@@ -65,8 +68,7 @@ TEST_CASE("a scene goes in and an audited trajectory comes out") {
   REQUIRE(report["intersecting_pairs"] == 0);
   REQUIRE(report["max_stretch"] > 1.0);
 
-  const Ended exported =
-      selvedge_program(folder, "export " + out + "/run.h5 --format pc2 --json --out " + out + "/pc2");
+  const Ended exported = selvedge_program(folder, "export " + out + " --format pc2 --json --out " + out + "/pc2");
   REQUIRE(exported.status == 0);
   REQUIRE(nlohmann::json::parse(exported.out)["files"].size() == 2);
 
@@ -188,8 +190,9 @@ TEST_CASE("a dirty mesh ends with status 1") {
 }
 
 // On a busy machine a short run may be over before it is interrupted: then it is tried with a longer one.
-TEST_CASE("a run that is interrupted ends with whole files and is resumed to the same bits") {
-  const fake::Folder folder("main_interrupt");
+TEST_CASE("a run that is interrupted, hung up or killed is resumed to the same bits") {
+  const int signal = GENERATE(SIGINT, SIGHUP, SIGKILL);
+  const fake::Folder folder("main_interrupt_" + std::to_string(signal));
   write_scene(folder);
   const std::string scene = (folder.path / "scene.yaml").string(), out = (folder.path / "out").string();
   const auto frames_there = [&] {
@@ -201,6 +204,7 @@ TEST_CASE("a run that is interrupted ends with whole files and is resumed to the
     const std::string frames = "run.frames=" + std::to_string(wanted);
     const pid_t child = fork();
     if (child == 0) {
+      std::signal(SIGHUP, SIG_DFL);  // `nohup` may have started the tests
       std::freopen("/dev/null", "w", stdout);
       std::freopen("/dev/null", "w", stderr);
       execl(tested_program(), "selvedge", "simulate", scene.c_str(), "--no-view", "--set", frames.c_str(), "--out",
@@ -208,23 +212,121 @@ TEST_CASE("a run that is interrupted ends with whole files and is resumed to the
       _exit(127);
     }
     while (frames_there() < 3) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    kill(child, SIGINT);
+    kill(child, signal);
     waitpid(child, &status, 0);
-    REQUIRE(WIFEXITED(status));
-    if (WEXITSTATUS(status) != 0 || wanted > 20000) break;
+    REQUIRE((WIFEXITED(status) || signal == SIGKILL));
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || wanted > 20000) break;
   }
   const std::string arguments =
       "simulate " + scene + " --no-view --set run.frames=" + std::to_string(wanted) + " --out ";
-  REQUIRE(WEXITSTATUS(status) == 1);
-  REQUIRE(TrajectoryReader(out + "/run.h5").closed());
   REQUIRE(frames_there() < wanted + 1);
-  REQUIRE(nlohmann::json::parse(read_text(out + "/summary.json"))["end"] == "interrupted");
+  if (signal != SIGKILL) {
+    REQUIRE(WEXITSTATUS(status) == 1);
+    REQUIRE(TrajectoryReader(out + "/run.h5").closed());
+    REQUIRE(nlohmann::json::parse(read_text(out + "/summary.json"))["end"] == "interrupted");
+  }
 
   REQUIRE(selvedge_program(folder, arguments + out + " --resume").status == 0);
   REQUIRE(selvedge_program(folder, arguments + out + "2").status == 0);
   const TrajectoryReader resumed(out + "/run.h5"), whole(out + "2/run.h5");
   REQUIRE(resumed.frame_count() == wanted + 1);
   for (const int i : {10, wanted / 2, wanted}) REQUIRE(resumed.frame(i).x == whole.frame(i).x);
+}
+
+TEST_CASE("an outcome that did not come true is in the object, which is not clean") {
+  const fake::Folder folder("main_outcome");
+  write_scene(folder);
+  std::ofstream(folder.path / "scene.yaml", std::ios::app)
+      << "outcome: [{name: flies, outside: {min: [-1, -1, -1], max: [1, 1, 1]}, least: 5}]\n";
+  const std::string arguments =
+      "simulate " + (folder.path / "scene.yaml").string() + " --no-view --json --out " + (folder.path / "out").string();
+  const Ended run = selvedge_program(folder, arguments);
+  CHECK(run.status == 1);
+  CHECK(run.err.find("flies: no") != std::string::npos);
+  const auto summary = nlohmann::json::parse(run.out);
+  CHECK(summary["end"] == "finished");
+  CHECK(summary["clean"] == false);
+  CHECK(summary["outcomes"][0]["came_true"] == false);
+  const Ended again = selvedge_program(folder, arguments + " --resume=auto");
+  CHECK(again.status == 1);
+  CHECK(again.out == run.out);
+}
+
+TEST_CASE("--resume=auto starts, goes on, or reports the run that has ended") {
+  const fake::Folder folder("main_auto");
+  write_scene(folder);
+  const std::filesystem::path out = folder.path / "out";
+  const std::string arguments = "simulate " + (folder.path / "scene.yaml").string() + " --no-view --json --out " +
+                                out.string() + " --resume=auto";
+  const Ended started = selvedge_program(folder, arguments);
+  INFO(started.err);
+  REQUIRE(started.status == 0);
+  const auto written = std::filesystem::last_write_time(out / "run.h5");
+  const Ended reported = selvedge_program(folder, arguments);
+  CHECK(reported.status == 0);
+  CHECK(reported.out == started.out);
+  CHECK(reported.err.find("finished, 3 of 3 frames, clean") != std::string::npos);
+  CHECK(std::filesystem::last_write_time(out / "run.h5") == written);
+  const Ended other = selvedge_program(folder, arguments + " --set run.frames=4");
+  CHECK(other.status == 2);
+  CHECK(other.err.find("another configuration") != std::string::npos);
+  CHECK(selvedge_program(folder, arguments + "s").status == 2);
+}
+
+TEST_CASE("what cannot be printed ends with status 2") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const fake::Folder folder("main_full");
+  write_scene(folder);
+  const std::string scene = (folder.path / "scene.yaml").string();
+  for (const std::string& arguments : {std::string("--help"), std::string("--version"), std::string("info"),
+                                      std::string("info --json"), "plan " + scene, "plan --json " + scene,
+                                      "simulate " + scene + " --no-view --out " + (folder.path / "out").string()}) {
+    const Ended full = selvedge_program(folder, arguments, "", "/dev/full");
+    INFO(arguments << "\n" << full.err);
+    CHECK(full.status == 2);
+    CHECK(full.err.find("standard output: cannot be written") != std::string::npos);
+  }
+}
+
+TEST_CASE("a request for 100,000 threads is not taken seriously") {
+  const fake::Folder folder("main_many_threads");
+  write_scene(folder);
+  const std::string out = (folder.path / "out").string();
+  for (const char* many : {"100000", "2,100000", "99999999999999999999"}) {
+    const std::string before = std::string("env OMP_NUM_THREADS=") + many + " ";
+    const Ended info = selvedge_program(folder, "info --json", before);
+    INFO(info.err);
+    CHECK(info.err.find("warning: OMP_NUM_THREADS=") != std::string::npos);
+    CHECK(nlohmann::json::parse(info.out)["threads"] <= std::max(1u, std::thread::hardware_concurrency()));
+    CHECK(selvedge_program(folder, "simulate " + (folder.path / "scene.yaml").string() + " --no-view --out " + out,
+                           before)
+              .status == 0);
+  }
+}
+
+TEST_CASE("no message of a library stands alone, and none ends early") {
+  const fake::Folder folder("main_messages");
+  std::ofstream(folder.path / "a.gltf") << "{\"asset\n";
+  const std::string body = " --out " + (folder.path / "b.h5").string();
+  const Ended gltf = selvedge_program(folder, "body " + (folder.path / "a.gltf").string() + body);
+  CHECK(gltf.status == 2);
+  CHECK(gltf.err.find("a.gltf: is no glTF 2.0") != std::string::npos);
+  CHECK(gltf.err.find("json.exception") == std::string::npos);
+  std::ofstream(folder.path / "nul.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3" << '\0' << "\n";
+  const Ended nul = selvedge_program(folder, "check " + (folder.path / "nul.obj").string());
+  INFO(nul.err);
+  CHECK(nul.status == 2);
+  CHECK(nul.err.find("nul.obj:4: `3\\0") != std::string::npos);
+  CHECK(nul.err.find("cure: ") != std::string::npos);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  std::ofstream(folder.path / "large.obj") << "v 0 0 0\n";
+  std::filesystem::resize_file(folder.path / "large.obj", 1 << 30);
+  const Ended large =
+      selvedge_program(folder, "check " + (folder.path / "large.obj").string(), "ulimit -v 900000; OMP_NUM_THREADS=1 ");
+  INFO(large.err);
+  CHECK(large.status == 2);
+  CHECK(large.err.find("check: needs more memory than there is\n  cure: ") != std::string::npos);
+#endif
 }
 
 TEST_CASE("help stands in three groups, and a mistyped command names its neighbour") {
