@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/path_beside.hpp"
 
 namespace selvedge {
 namespace {
@@ -43,7 +44,7 @@ void write_seal(const std::filesystem::path& path) {
   file.clear();
   file.seekp(0);
   file.write(seal.data(), seal_bytes).flush();
-  if (!file) throw Error("cannot write the checksum", path.string(), "check the disk and who may write there");
+  if (!file) throw Error("cannot write the checksum", path_in_place(path).string(), write_cure);
 }
 
 long long check_seal(const std::filesystem::path& path) {

@@ -8,6 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
 #include "learned/network/architecture_text.hpp"
+#include "learned/network/nowhere_hdf5.hpp"
 #include "learned/network/weight_seal.hpp"
 
 namespace selvedge {
@@ -172,11 +173,7 @@ void require_half_range(const WeightFile& content, const std::string& where) {
   }
 }
 
-void write_content(const std::filesystem::path& path, const WeightFile& content, WeightStorage storage) {
-  const PropertyId creation(H5Pcreate(H5P_FILE_CREATE));
-  H5Pset_userblock(creation.id, seal_bytes);
-  const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id, H5P_DEFAULT)), path.string()};
-  if (store.file.id < 0) throw Error("cannot write", path_in_place(path).string(), write_cure);
+void write_fields(const WeightStore& store, const WeightFile& content, WeightStorage storage) {
   write_texts(store, "format", {form_name});
   write_texts(store, "version", {content.version});
   write_texts(store, "architecture", {architecture_text(content.architecture)});
@@ -193,7 +190,20 @@ void write_content(const std::filesystem::path& path, const WeightFile& content,
     write_dataset(store, "weights/" + array.name, stored_half(array, storage) ? half.id : H5T_IEEE_F32LE,
                   H5T_NATIVE_FLOAT, wanted_shape(array, is_matrix(array)), array.data);
   }
-  store.good(H5Fflush(store.file.id, H5F_SCOPE_LOCAL), "end of the file", "cannot be written");
+}
+
+void write_content(const std::filesystem::path& path, const WeightFile& content, WeightStorage storage) {
+  const PropertyId creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_userblock(creation.id, seal_bytes);
+  const WeightStore store{FileId(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id, H5P_DEFAULT)), path.string()};
+  if (store.file.id < 0) throw Error("cannot write", path_in_place(path).string(), write_cure);
+  try {
+    write_fields(store, content, storage);
+    store.good(H5Fflush(store.file.id, H5F_SCOPE_LOCAL), "end of the file", "cannot be written");
+  } catch (const Error&) {  // names a field, which is not at fault
+    write_nowhere(store.file.id);
+    throw Error("cannot write all of it", path_in_place(path).string(), write_cure);
+  }
 }
 
 // Removes the file unless it was renamed.
@@ -223,8 +233,7 @@ void write_weight_file(const std::filesystem::path& path, const WeightFile& cont
   write_seal(beside.path);
   std::error_code error;
   std::filesystem::rename(beside.path, path, error);
-  if (error)
-    throw Error("cannot rename the new file to it (" + error.message() + ")", path.string(), "check the folder");
+  if (error) throw Error("cannot write (" + error.message() + ")", path.string(), write_cure);
 }
 
 WeightFile read_weight_file(const std::filesystem::path& path) {

@@ -4,12 +4,10 @@
 #include <functional>
 #include <set>
 
-#include "collision/geometry/path_beside.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
-#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -132,9 +130,9 @@ std::string compare_json(const CompareResult& result) {
                     {"rows", json_list(result.rows, row_json)}});
 }
 
-void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& result) {
-  const std::filesystem::path beside = path_beside(path);
-  h5::File file = h5::File::create(beside);
+namespace {
+
+void fill_compare_hdf5(const h5::File& file, const CompareResult& result) {
   const h5::Handle rows = file.make_group("rows"), scenes = file.make_group("scenes");
   const auto write_texts = [&file](const std::string& place, const auto& all, auto member) {
     std::vector<std::string> texts;
@@ -156,8 +154,12 @@ void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& 
   write_numbers("scenes/steps", result.floors, &CompareFloor::steps);
   write_numbers("scenes/jittered", result.floors, &CompareFloor::jittered);
   write_numbers("scenes/lost", result.floors, &CompareFloor::lost);
-  file.close();
-  rename_file(beside, path);
+}
+
+}  // namespace
+
+void write_compare_hdf5(const std::filesystem::path& path, const CompareResult& result) {
+  h5::write_whole(path, [&](const h5::File& file) { fill_compare_hdf5(file, result); });
 }
 
 }  // namespace selvedge

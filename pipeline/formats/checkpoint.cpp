@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/path_beside.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
-#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -151,9 +149,7 @@ void read_inputs(const h5::File& file, Checkpoint& read) {
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& path, const State& state, const RunInputs& inputs) {
-  const std::filesystem::path beside = path_beside(path);
-  h5::File file = h5::File::create(beside);
-  try {
+  h5::write_whole(path, [&](const h5::File& file) {
     write_inputs(file, inputs);
     file.write_constant("time", H5T_NATIVE_DOUBLE, {1}, &state.time);
     file.write_constant("frame", H5T_NATIVE_INT, {1}, &state.frame);
@@ -165,14 +161,7 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
     write_all(file, "obstacle_", state.obstacles);
     h5::write_integers(file, "cut_out", state.cut_out);
     write_memory(file, state.memory);
-    file.close();
-  } catch (const Error&) {
-    file.abandon();
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw;
-  }
-  rename_file(beside, path);
+  });
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/path_beside.hpp"
 
 namespace selvedge::h5 {
 namespace {
@@ -136,18 +135,10 @@ void check_out_name(const std::filesystem::path& out, const std::string& nouns) 
 
 void write_form(const std::filesystem::path& path, const FileForm& form,
                 const std::function<void(const File&)>& fields) {
-  const std::filesystem::path beside = path_beside(path);
-  try {
-    File file = File::create(beside);
+  write_whole(path, [&](const File& file) {
     file.write_text("format", form.format);
     fields(file);
-    file.close();
-    file.move_to(path);
-  } catch (const Error&) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw;
-  }
+  });
 }
 
 }  // namespace selvedge::h5

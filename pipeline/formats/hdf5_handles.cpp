@@ -1,14 +1,12 @@
 #include "pipeline/formats/hdf5_handles.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <memory>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
+#include "learned/network/nowhere_hdf5.hpp"
 #include "pipeline/host/bounds.hpp"
 
 namespace selvedge::h5 {
@@ -161,14 +159,23 @@ void File::close() {
 }
 
 void File::abandon() {
-  void* descriptor = nullptr;
-  if (id() < 0 || H5Fget_vfd_handle(id(), H5P_DEFAULT, &descriptor) < 0) return;
-  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (nowhere >= 0) {
-    ::dup2(nowhere, *static_cast<int*>(descriptor));
-    ::close(nowhere);
-  }
+  write_nowhere(id());
   handle_.reset();
+}
+
+void write_whole(const std::filesystem::path& path, const std::function<void(const File&)>& fields) {
+  const std::filesystem::path beside = path_beside(path);
+  File file = File::create(beside);
+  try {
+    fields(file);
+    file.close();
+    file.move_to(path);
+  } catch (...) {
+    file.abandon();
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw;
+  }
 }
 
 Handle File::make_group(const std::string& name) const {

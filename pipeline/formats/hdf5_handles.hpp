@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,5 +95,8 @@ class File {
   std::filesystem::path path_;
   Handle handle_;
 };
+
+// Writes a file beside its place and renames it when it is whole. Where a write fails it leaves nothing.
+void write_whole(const std::filesystem::path&, const std::function<void(const File&)>& fields);
 
 }  // namespace selvedge::h5

@@ -140,6 +140,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
     impl_->file.flush();
     impl_->file.move_to(path);
   } catch (...) {
+    if (impl_) impl_->file.abandon();
     std::error_code ignored;
     std::filesystem::remove(beside, ignored);
     throw;
