@@ -38,8 +38,8 @@ struct RunSummary {
     std::string obstacle;
     int most = 0, frames = 0, first_frame = -1;  // triangles in the worst frame; number of frames; -1: none
   };
-  std::vector<SwitchedOff> switched_off;  // of each obstacle
-  std::vector<OutcomeResult> outcomes;    // of what the scene states
+  std::vector<SwitchedOff> switched_off;   // of each obstacle
+  std::vector<OutcomeResult> outcomes;     // of what the scene states
   std::vector<std::string> outcome_lines;  // the same for people
   std::uint64_t positions_hash = 0;        // of the cloth's positions as written, all frames so far
   std::uint64_t inputs_hash = 0;           // of all that the run was made of

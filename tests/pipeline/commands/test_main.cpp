@@ -279,8 +279,8 @@ TEST_CASE("what cannot be printed ends with status 2") {
   write_scene(folder);
   const std::string scene = (folder.path / "scene.yaml").string();
   for (const std::string& arguments : {std::string("--help"), std::string("--version"), std::string("info"),
-                                      std::string("info --json"), "plan " + scene, "plan --json " + scene,
-                                      "simulate " + scene + " --no-view --out " + (folder.path / "out").string()}) {
+                                       std::string("info --json"), "plan " + scene, "plan --json " + scene,
+                                       "simulate " + scene + " --no-view --out " + (folder.path / "out").string()}) {
     const Ended full = selvedge_program(folder, arguments, "", "/dev/full");
     INFO(arguments << "\n" << full.err);
     CHECK(full.status == 2);
