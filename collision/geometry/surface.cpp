@@ -4,7 +4,6 @@
 #include <cassert>
 #include <tuple>
 
-#include "collision/geometry/corners.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 
 namespace selvedge {
@@ -141,7 +140,10 @@ Points vertex_normals(const Surface& s, const Points& x) {
 #pragma omp parallel if (faces > 1000)
   {
 #pragma omp for schedule(static)
-    for (int t = 0; t < faces; ++t) areas.row(t) = twice_area(s.triangles, x, t).transpose();
+    for (int t = 0; t < faces; ++t) {
+      const Vec3 a = row(x, s.triangles(t, 0));
+      areas.row(t) = (row(x, s.triangles(t, 1)) - a).cross(row(x, s.triangles(t, 2)) - a).transpose();
+    }
 #pragma omp for schedule(static)
     for (int v = 0; v < s.vertex_count; ++v) {
       Vec3 sum = Vec3::Zero();
