@@ -19,8 +19,9 @@ struct TimedRunOptions {
 // limit, and says so. Absent if it was stopped.
 std::optional<CompareRun> timed_run(const Setup&, const Start&, const TimedRunOptions&, const Stop&);
 
-// Checks that a network alone made every frame of a kept run after the start: none was gated, responded to, pushed or
-// made by another stepper. Returns the reason if it is not so, else an empty text.
+// Checks that a network alone made every frame of a kept run after the start: none was gated, responded to or made by
+// another stepper, and none was pushed out of a body but the first, where a network that settles does so itself (HOOD).
+// Returns the reason if it is not so, else an empty text.
 std::string trouble_of_bare_run(const std::filesystem::path& trajectory);
 
 }  // namespace selvedge

@@ -57,6 +57,27 @@ TEST_CASE("compare: the short suite takes all kinds of steppers, and says what i
   CHECK_THAT(trouble_of_bare_run(folder.path / "parts" / "hang" / "row_0.h5"), Contains("made by `conventional`"));
 }
 
+TEST_CASE("compare: a bare run is pushed out of a body in the frame alone in which it settles", "[compare]") {
+  const Folder folder("compare_bare");
+  const Scene scene = fake::scene();
+  const auto trouble = [&](int pushed_frame) {
+    const std::filesystem::path file = folder.path / ("pushed_" + std::to_string(pushed_frame) + ".h5");
+    TrajectoryWriter writer(file, trajectory_info(scene, "", "learned", 30));
+    for (int i = 0; i < 4; ++i) {
+      Frame frame = fake::frame(scene, 0);
+      frame.report = {};
+      frame.report.status = StepStatus::accepted;
+      frame.report.by = "learned";
+      frame.report.collision.pushed_out = i == pushed_frame ? 3 : 0;
+      writer.append(frame);
+    }
+    writer.close();
+    return trouble_of_bare_run(file);
+  };
+  CHECK(trouble(1).empty());
+  CHECK_THAT(trouble(2), Contains("frame 2 was pushed out of the body"));
+}
+
 TEST_CASE("compare: a stepper that this program lacks and keys of the comparison", "[compare]") {
   const Folder folder("compare_lacks");
   fake::write(folder, "hanging.yaml",
