@@ -70,7 +70,8 @@ void add_doubtful(const RunSummary& s, LabelLines& add) {
                       "and cloth that its parts catch is let through",
                       one.most, one.obstacle, one.frames, one.frames == 1 ? "" : "s", one.first_frame));
   if (const auto pushed = static_cast<long>(total_of(s.fields, "pushed_out").sum); pushed > 0)
-    add("pushed out", fmt::format("{} vertices over all frames, by the repulsive layer", pushed));
+    add("pushed out",
+        fmt::format("{} vertices over all frames, by the repulsive layer or the settling of a network", pushed));
   const auto frames = [&](std::string_view field) { return total_of(s.fields, field).frames; };
   if (frames("not_converged") > 0)
     add("not converged", fmt::format("{} frames: {:.2g} m off at most", frames("not_converged"),
