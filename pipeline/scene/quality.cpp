@@ -18,7 +18,7 @@ struct QualityLevel {
   std::vector<QualityValue> values;
 };
 
-// Measured in docs/benchmarks.md; draft by counts alone.
+// Measured in docs/benchmarks.md.
 const std::vector<QualityLevel>& levels() {
   static const std::vector<QualityLevel> all{{"draft",
                                               "",
