@@ -85,6 +85,7 @@ torch:  ## libtorch's library beside the program in build/release, and the tests
 test-%:
 	@cmake/install-packages.sh $(PACKAGES_$*)
 	@$(MAKE) --no-print-directory build/$*/configured
+	@grep -q '^Catch2_DIR:PATH=/' build/$*/CMakeCache.txt || cmake --preset $* $(CONFIGURE)  # configured before it was here
 	@$(ADDED_$*)
 	@cmake --build --preset $* --parallel $(JOBS)
 	@cmake/run-tests.sh $* $(JOBS) --tests-regex '$(FILTER)'

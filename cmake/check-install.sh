@@ -20,6 +20,11 @@ cmake -S "$work/source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DC
 cmake --build "$work/build" --parallel "${JOBS:-$(nproc)}" | tail -n 1
 cmake --install "$work/build" --prefix "$work/prefix" >/dev/null
 rm -rf "$work/source" "$work/build"
+# What was installed serves another machine: it names no folder of this one.
+if grep -rnE "$work|/usr/(lib|include)" "$work/prefix/lib/cmake"; then
+  echo "check-install: the installed package names folders of this machine" >&2
+  exit 1
+fi
 
 mkdir "$work/user"
 cp "$root/docs/examples/drop.cpp" "$work/user"

@@ -87,7 +87,9 @@ function(selvedge_module name)
     selvedge_compile_together(${objects} "${module_ALONE}" ${parallel})
     if(SELVEDGE_OPENMP)
       target_compile_options(${objects} PRIVATE ${OpenMP_CXX_FLAGS})
-      target_link_libraries(selvedge_${name} PUBLIC ${OpenMP_CXX_LIBRARIES})
+      # Where it is installed, OpenMP is that of the machine that links it.
+      target_link_libraries(selvedge_${name} PUBLIC "$<BUILD_INTERFACE:${OpenMP_CXX_LIBRARIES}>"
+        INTERFACE $<INSTALL_INTERFACE:$<LINK_ONLY:OpenMP::OpenMP_CXX>>)
     endif()
   endif()
   if(module_HEAVY)
