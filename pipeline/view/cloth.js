@@ -106,7 +106,8 @@ function clothMaterials(run, side) {
                     })));
 }
 
-// Red triangles on the surface, and through it where something hides them.
+// Red triangles on the surface, and through it where something hides them. White edges tell them from any cloth, also
+// for eyes to which red and orange are alike.
 function markMeshes(geometry, most) {
   const marks = new THREE.BufferGeometry();
   marks.setAttribute("position", geometry.attributes.position);
@@ -119,8 +120,12 @@ function markMeshes(geometry, most) {
   const hidden = new THREE.Mesh(
       marks,
       new THREE.MeshBasicMaterial({...red, transparent: true, opacity: 0.45, depthTest: false, depthWrite: false}));
+  const edges = new THREE.Mesh(
+      marks,
+      new THREE.MeshBasicMaterial({color: 0xffffff, wireframe: true, transparent: true, opacity: 0.8, depthTest: false}));
   hidden.renderOrder = 2;
-  return [seen, hidden];
+  edges.renderOrder = 3;
+  return [seen, hidden, edges];
 }
 
 // Mean edge of the rest shape, as if its triangles were equilateral; 1 / (2 area)^2 is the determinant of the metric.
@@ -197,15 +202,18 @@ function makeFigure(run) {
     object.frustumCulled = false;
   });
 
+  // Edges are drawn where a triangle is more than a few pixels wide; `pixels`: of a metre.
+  const edge = edgeLength(run.metric);
+  function outline(pixels) { marks[2].material.opacity = pixels * edge > 6 ? 0.8 : 0; }
+
   let drawn = -1;
   function moveTo(next) {
-    unpack(run.levels, run.boxes[next], next, geometry.attributes.position.array);
+    unpack(run.positions, next, geometry.attributes.position.array);
     updateNormals(geometry);
     bodies.forEach((mesh, b) => {
       const body = run.obstacles[b];
       if (!body.moving && drawn >= 0) return;
-      const frame = body.moving ? next : 0;
-      unpack(body.levels, body.boxes[frame], frame, mesh.geometry.attributes.position.array);
+      unpack(body.positions, body.moving ? next : 0, mesh.geometry.attributes.position.array);
       updateNormals(mesh.geometry);
     });
     const index = marks[0].geometry.index;
@@ -236,5 +244,5 @@ function makeFigure(run) {
       mesh.visible = look.marks;
     });
   }
-  return {group, show};
+  return {group, show, outline};
 }

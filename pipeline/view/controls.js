@@ -13,7 +13,7 @@ function readOptions() {
   };
 }
 
-// Marks under the slider: frames with intersecting pairs in red, frames of a fall-back stepper in amber.
+// Marks under the slider: frames with intersecting pairs in red, frames of a fall-back stepper in amber and half as high.
 function drawTicks(canvas, runs, timeline) {
   const ratio = Math.min(window.devicePixelRatio || 1, 2), frames = timeline.length;
   canvas.width = canvas.clientWidth * ratio;
@@ -26,7 +26,8 @@ function drawTicks(canvas, runs, timeline) {
     if (!bad && !fell) return;
     context.fillStyle = style.getPropertyValue(bad ? "--bad" : "--warn");
     const step = canvas.width / Math.max(1, frames - 1);
-    context.fillRect(Math.max(0, (f - 0.5) * step), 0, Math.max(ratio, step), canvas.height);
+    const top = bad ? 0 : canvas.height / 2;
+    context.fillRect(Math.max(0, (f - 0.5) * step), top, Math.max(ratio, step), canvas.height - top);
   });
 }
 

@@ -1,40 +1,118 @@
-// Everything the program wrote into the page, as typed arrays. A level of 65535 is a vertex that is not finite.
+// Everything the program wrote into the page, as typed arrays. Runs share arrays that are equal.
 
-function decode(id, Type) {
-  const element = document.getElementById(id);
-  const text = atob(element.textContent);
-  element.remove();
-  const bytes = new Uint8Array(text.length);
+const bytesOf = (id) => {
+  const text = atob(document.getElementById(id).textContent), bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  return new Type(bytes.buffer);
+  return bytes;
+};
+
+// What make(...) made the first time that it was asked for with these arguments.
+function onlyOnce(make) {
+  const known = new Map();
+  return (...asked) => {
+    const key = asked.join(" ");
+    return known.get(key) || known.set(key, make(...asked)).get(key);
+  };
 }
 
-// Positions of one surface at one drawn frame into `out`, from its levels and the frame's box.
-function unpack(levels, box, frame, out) {
+const indices = onlyOnce((id) => new Uint32Array(bytesOf(id).buffer));
+const floats = onlyOnce((id) => new Float32Array(bytesOf(id).buffer));
+
+// Bits from the highest of each byte on.
+function bitReader(bytes) {
+  let at = 0;
+  const next32 = () => {
+    const i = at >>> 3, s = at & 7;
+    return ((bytes[i] << 24 | bytes[i + 1] << 16 | bytes[i + 2] << 8 | bytes[i + 3]) << s) | (bytes[i + 4] >> (8 - s));
+  };
+  const read = (bits) => {
+    if (!bits) return 0;
+    const value = next32() >>> (32 - bits);
+    at += bits;
+    return value;
+  };
+  // A Rice code: ones, a zero, k bits; after 24 ones the number itself in 40 bits. 0, 1, 2, 3, ... are 0, -1, 1, -2, ...
+  const signed = (k, scale) => {
+    const ones = Math.clz32(~next32());
+    let number;
+    if (ones < 24) {
+      at += ones + 1;
+      number = ones * scale + read(k);
+    } else {
+      at += 24;
+      number = read(20) * 1048576;
+      number += read(20);
+    }
+    return number % 2 ? -(number + 1) / 2 : number / 2;
+  };
+  return {read, signed};
+}
+
+// Whole steps of a surface in every frame, 3 a vertex, as packed_positions.hpp says.
+const steps = onlyOnce((id, vertices, frames) => {
+  const {read, signed} = bitReader(bytesOf(id)), size = 3 * vertices, levels = new Int32Array(size * frames);
+  for (let frame = 0; frame < frames; ++frame)
+    for (let axis = 0; axis < 3; ++axis) {
+      const line = read(1), againstNeighbour = read(1), k = read(5), scale = 2 ** k;
+      const begin = frame * size, end = begin + size;
+      let neighbour = 0;
+      for (let i = begin + axis; i < end; i += 3) {
+        const before = frame ? levels[i - size] : 0;
+        const predicted = line ? 2 * before - levels[i - 2 * size] : before;
+        const rest = signed(k, scale) + (againstNeighbour ? neighbour : 0);
+        neighbour = rest;
+        levels[i] = predicted + rest;
+      }
+    }
+  return levels;
+});
+
+// Boxes round the surface by frame, without what is absent.
+function boxesOf({levels, step, frames, absent}) {
+  const size = levels.length / frames;
+  return Array.from({length: frames}, (_, frame) => {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const left = new Set(absent[frame] || []), begin = frame * size;
+    for (let i = 0; i < size; ++i) {
+      if (left.has(Math.floor(i / 3))) continue;
+      const value = levels[begin + i] * step, k = i % 3;
+      if (value < low[k]) low[k] = value;
+      if (value > high[k]) high[k] = value;
+    }
+    return new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high));
+  });
+}
+
+function openPositions(positions, vertices) {
+  positions.levels = steps(positions.bytes, vertices, positions.frames);
+  return positions;
+}
+
+// Positions of one surface at one drawn frame into `out`; NaN for a vertex that is absent.
+function unpack({levels, step, absent}, frame, out) {
   const begin = frame * out.length;
-  for (let i = 0; i < out.length; ++i) {
-    const level = levels[begin + i];
-    out[i] = level === 65535 ? NaN : box[i % 3] + level * box[3 + (i % 3)];
-  }
+  for (let i = 0; i < out.length; ++i) out[i] = levels[begin + i] * step;
+  for (const v of absent[frame] || []) out.fill(NaN, 3 * v, 3 * v + 3);
 }
 
 function loadRuns() {
   const data = JSON.parse(document.getElementById("runs").textContent);
-  data.runs.forEach((run, r) => {
-    run.triangles = decode(`run${r}-triangles`, Uint32Array);
-    run.metric = decode(`run${r}-metric`, Float32Array);
-    run.levels = decode(`run${r}-x`, Uint16Array);
-    run.maps.forEach((map, m) => {
-      map.values = decode(`run${r}-map${m}`, Float32Array);
+  data.runs.forEach((run) => {
+    run.triangles = indices(run.triangleArray);
+    run.metric = floats(run.metric);
+    run.maps.forEach((map) => {
+      map.values = floats(map.values);
     });
     run.frames = run.series.time.length;
     run.end = run.series.time[run.frames - 1];
-    run.obstacles.forEach((body, b) => {
-      body.triangles = decode(`run${r}-body${b}-triangles`, Uint32Array);
-      body.levels = decode(`run${r}-body${b}-x`, Uint16Array);
+    run.boxes = boxesOf(openPositions(run.positions, run.vertices));
+    run.obstacles.forEach((body) => {
+      body.triangles = indices(body.triangleArray);
+      body.boxes = boxesOf(openPositions(body.positions, body.vertices));
     });
     run.pairs = run.series.self_pairs.map((pairs, f) => pairs + run.series.obstacle_pairs[f]);
   });
+  document.querySelectorAll("script[type='text/plain']").forEach((array) => array.remove());
   return data;
 }
 
@@ -52,15 +130,8 @@ function lastNotAbove(list, value) {
 const frameAt = (run, time) => lastNotAbove(run.series.time, time + 1e-9);
 const drawnAt = (run, frame) => lastNotAbove(run.drawn, frame);
 
-// The box round everything a run's frames fill, from the frames' own boxes.
-function boundsOf(boxes) {
-  const bounds = new THREE.Box3();
-  for (const b of boxes) {
-    bounds.expandByPoint(new THREE.Vector3(b[0], b[1], b[2]));
-    bounds.expandByPoint(new THREE.Vector3(b[0] + 65534 * b[3], b[1] + 65534 * b[4], b[2] + 65534 * b[5]));
-  }
-  return bounds;
-}
+// The box round several boxes.
+const boundsOf = (boxes) => boxes.reduce((sum, box) => sum.union(box), new THREE.Box3());
 
 // Short numbers for reading: three digits, small ones with a power.
 function short(value) {

@@ -1,10 +1,36 @@
 // One renderer and one camera for all runs; each run is a scene drawn into its panel's rectangle.
 
+const smaller = (a, b) => Math.min(a, b), larger = (a, b) => Math.max(a, b);
 const sizeOf = (box) => box.getSize(new THREE.Vector3()).length();
 
-// A floor or a wall: far larger than the cloth; not framed, and casting no shadow.
-function isBackdrop(body, cloth) {
-  return sizeOf(boundsOf(body.boxes)) > 2.2 * sizeOf(cloth);
+// A floor or a wall: far larger than the cloth ever is; not framed, and casting no shadow.
+function isBackdrop(body, clothBoxes) {
+  const largestOf = (boxes) => boxes.reduce((most, box) => Math.max(most, sizeOf(box)), 0);
+  return largestOf(body.boxes) > 2.2 * largestOf(clothBoxes);
+}
+
+// Higher than wide, as someone who stands.
+function isSlender(box) {
+  const size = box.getSize(new THREE.Vector3());
+  return size.y > 1.3 * Math.max(size.x, size.z);
+}
+
+// Points of the surfaces in up to 24 drawn frames, as far as they lie in `near`, relative to the camera's path: what
+// `look` has to fit into the window.
+function framedPoints(run, bodies, near, path) {
+  const points = [], point = new THREE.Vector3(), frames = run.drawn.length, stride = Math.ceil(frames / 24);
+  const add = ({levels, step}, vertices, frame, k) => {
+    const every = Math.ceil(vertices / 800);
+    for (let v = 0; v < vertices; v += every) {
+      point.fromArray(levels, 3 * (frame * vertices + v)).multiplyScalar(step);
+      if (near.containsPoint(point)) points.push(point.clone().sub(path[k]));
+    }
+  };
+  for (let k = 0; k < frames; k += stride) {
+    add(run.positions, run.vertices, k, k);
+    for (const body of bodies) add(body.positions, body.vertices, body.moving ? k : 0, k);
+  }
+  return points;
 }
 
 // Places of a moving thing by frame, each the mean of those less than half a second before and after.
@@ -22,7 +48,7 @@ function smoothed(places, times) {
 // far the camera goes along, level: `path` has its place by drawn frame, `box` what it shows at the first one.
 function framing(runs) {
   for (const run of runs)
-    for (const body of run.obstacles) body.backdrop = isBackdrop(body, boundsOf(run.boxes));
+    for (const body of run.obstacles) body.backdrop = isBackdrop(body, run.boxes);
   const run = runs[0], cloth = boundsOf(run.boxes);
   const near = cloth.clone().expandByScalar(0.35 * sizeOf(cloth));
   const bodies = run.obstacles.filter((body) => !body.backdrop && boundsOf(body.boxes).intersectsBox(near));
@@ -40,7 +66,8 @@ function framing(runs) {
     centre: sphere.center,
     radius,
     floor: lowest - (run.obstacles.some((b) => b.backdrop) ? 0.05 : 0.004) * radius,
-    box,
+    slender: boxes.filter(isSlender).length > boxes.length / 2,
+    points: framedPoints(run, bodies, near, follows ? path : run.drawn.map(() => new THREE.Vector3())),
     path: follows ? path : null
   };
 }
@@ -142,26 +169,29 @@ function makeStage(canvas, runs) {
     maxDistance: 20 * frame.radius
   });
   const offset = new THREE.Vector3();  // how far the camera has gone along
-  // Camera at an azimuth and elevation in degrees and a distance in units of the one that shows every frame's box, in a
-  // rectangle below its labels.
-  function look(azimuth, elevation, distance, {width, height, labels}) {
+  // Camera at an azimuth and elevation in degrees and a distance in units of the one from which the framed points fill
+  // a rectangle below its labels.
+  function look(azimuth, elevation, distance, {width, height, labels, aside}) {
     const a = THREE.Math.degToRad(azimuth), e = THREE.Math.degToRad(elevation);
     const toward = new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e));
-    const centre = frame.centre.clone().add(offset);
-    controls.target.copy(centre);
-    camera.position.copy(toward).add(centre);
-    camera.lookAt(centre);
+    camera.position.copy(toward);
+    camera.lookAt(new THREE.Vector3());
     const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
     const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
+    const middle = (axis) => {
+      const along = frame.points.map((p) => p.dot(axis));
+      return axis.clone().multiplyScalar((along.reduce(smaller, Infinity) + along.reduce(larger, -Infinity)) / 2);
+    };
+    const centre = frame.points.length ? middle(toward).add(middle(right)).add(middle(up)) : frame.centre.clone();
     const half = Math.tan(THREE.Math.degToRad(camera.fov / 2)), free = (height - labels) / Math.max(1, height);
-    const tall = half * free, wide = half * width / Math.max(1, height);
-    let away = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const c = new THREE.Vector3(...["x", "y", "z"].map((k, i) => frame.box[corner & (1 << i) ? "max" : "min"][k]))
-                    .sub(frame.centre);
-      away = Math.max(away, c.dot(toward) + Math.max(Math.abs(c.dot(up)) / tall, Math.abs(c.dot(right)) / wide));
-    }
-    camera.position.copy(toward).multiplyScalar(1.03 * distance * away).add(centre);
+    const tall = half * free, wide = half * (width - 2 * aside) / Math.max(1, height), from = new THREE.Vector3();
+    const away = frame.points.reduce((most, p) => {
+      from.copy(p).sub(centre);
+      return Math.max(
+          most, from.dot(toward) + Math.max(Math.abs(from.dot(up)) / tall, Math.abs(from.dot(right)) / wide));
+    }, 1e-3 * frame.radius);
+    controls.target.copy(centre.add(offset));
+    camera.position.copy(toward).multiplyScalar(1.06 * distance * away).add(centre);
     controls.update();
   }
   // Takes the camera, wherever the user has turned it, along with the first run's drawn frame.
@@ -179,18 +209,21 @@ function makeStage(canvas, runs) {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
   }
-  // Draws every scene into its rectangle, given in CSS pixels of the canvas with the height of its labels.
+  // Draws every scene into its rectangle, given in CSS pixels of the canvas with the height of its labels and how
+  // far the figure stands to the right of the middle.
   function draw(rectangles) {
     renderer.setScissorTest(false);
     renderer.clear();
     renderer.setScissorTest(true);
     scenes.forEach((scene, i) => {
-      const {left, top, width, height, labels} = rectangles[i];
+      const {left, top, width, height, labels, aside} = rectangles[i];
       if (width < 1 || height < 1) return;
       const bottom = canvas.clientHeight - top - height;
       renderer.setViewport(left, bottom, width, height);
       renderer.setScissor(left, bottom, width, height);
-      camera.setViewOffset(width, height, 0, -labels / 2, width, height);
+      const away = camera.position.distanceTo(controls.target);
+      figures[i].outline(height / (2 * away * Math.tan(THREE.Math.degToRad(camera.fov / 2))));
+      camera.setViewOffset(width, height, -aside, -labels / 2, width, height);
       renderer.render(scene, camera);
     });
   }
@@ -200,5 +233,5 @@ function makeStage(canvas, runs) {
       uniforms.strength.value = dark ? 0.13 : 0.15;
     });
   }
-  return {renderer, camera, controls, figures, spacing, look, follow, resize, draw, setDark};
+  return {renderer, camera, controls, figures, spacing, slender: frame.slender, look, follow, resize, draw, setDark};
 }

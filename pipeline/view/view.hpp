@@ -12,11 +12,10 @@
 namespace selvedge {
 
 struct ViewOptions {
-  // Folder with three.min.js (r111) and examples/js/controls/OrbitControls.js; empty: the one found when the program
-  // was built.
+  // Folder with three.min.js (r111) and examples/js/controls/OrbitControls.js; empty: what the program was built with.
   std::filesystem::path three = {};
-  // Limit of the geometry of all runs in the page [bytes, as text]. A run above its equal share is drawn at every k-th
-  // frame, with the smallest k that fits, and at its last; its plots keep every frame.
+  // Limit of the positions of all runs in the page [bytes, as text]. A run above its equal share is drawn at every k-th
+  // frame, with a k that fits, and at its last; its plots keep every frame.
   std::size_t limit = 60'000'000;
 };
 
@@ -33,7 +32,7 @@ struct ViewTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-// One run for the page. `frame` is called once for each index, in ascending order.
+// One run for the page. `frame` is called for each index in ascending order, and again for those that are drawn.
 struct ViewRun {
   std::string name;
   TrajectoryInfo info;
@@ -43,8 +42,8 @@ struct ViewRun {
   ViewTable table = {};
 };
 
-// One HTML page that needs no network and no other file: positions rounded to 16 bits of each frame's bounding box,
-// everything else exact. Throws Error if there is no run or no frame, or if three.js is absent.
+// One HTML page that needs no network and no other file: positions rounded to 0.05 mm or less
+// (packed_positions.hpp), everything else exact. Throws Error if there is no run or no frame, or if three.js is absent.
 std::string view_page(const std::vector<ViewRun>& runs, const ViewOptions& options = {});
 
 // Writes the page to a file beside it and renames that. Throws Error as view_page does, and if it cannot be written.

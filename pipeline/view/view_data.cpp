@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/host/version.hpp"
+#include "pipeline/view/packed_positions.hpp"
 
 namespace selvedge {
 namespace {
@@ -15,32 +16,25 @@ namespace {
 using nlohmann::json;
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian arrays");
 
-constexpr int levels = 65535;
-constexpr std::uint16_t not_finite = 65535;
-
 template <class T>
 std::string_view bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
-// Writes base64, which has no character with a meaning in HTML.
-void append_array(std::string& html, const std::string& id, std::string_view bytes) {
-  html += "<script type=\"text/plain\" id=\"" + id + "\">" + base64(bytes) + "</script>\n";
-}
+// Arrays in base64, which has no character with a meaning in HTML. Equal ones, such as a body's in several runs, stand
+// in the page once.
+struct Arrays {
+  std::string html;
+  std::map<std::string, std::string, std::less<>> known;  // text -> id
 
-void append_triangles(std::string& html, const std::string& id, const Triangles& triangles) {
-  append_array(html, id, bytes_of(std::span<const int>(triangles.data(), triangles.size())));
-}
-
-// The boxes and arrays of one surface in the frames that are drawn.
-struct Track {
-  json boxes = json::array();
-  std::vector<std::uint16_t> values;
-
-  void append(const PointsF& x) {
-    const QuantisedPoints q = quantise(x);
-    boxes.push_back({q.origin.x(), q.origin.y(), q.origin.z(), q.step.x(), q.step.y(), q.step.z()});
-    values.insert(values.end(), q.levels.begin(), q.levels.end());
+  std::string add(std::string_view bytes) {
+    std::string text = base64(bytes);
+    const auto [at, is_new] = known.try_emplace(std::move(text), "array" + std::to_string(known.size()));
+    if (is_new) html += "<script type=\"text/plain\" id=\"" + at->second + "\">" + at->first + "</script>\n";
+    return at->second;
+  }
+  std::string add(const Triangles& triangles) {
+    return add(bytes_of(std::span<const int>(triangles.data(), triangles.size())));
   }
 };
 
@@ -54,13 +48,6 @@ struct Series {
         std::visit([&](const auto& value) { numbers[field.name].push_back(value); }, field.get(frame));
   }
 };
-
-std::size_t bytes_a_frame(const TrajectoryInfo& info) {
-  std::size_t vertices = info.cloth_first_vertex.empty() ? info.rest.rows() : info.cloth_first_vertex.back();
-  for (const auto& body : info.obstacles)
-    if (body.moving) vertices += body.vertex_count;
-  return vertices * 3 * sizeof(std::uint16_t) * 4 / 3;
-}
 
 json describe(const ViewRun& run) {
   const TrajectoryInfo& info = run.info;
@@ -79,51 +66,91 @@ json describe(const ViewRun& run) {
           {"clothFirstTriangle", info.cloth_first_triangle}};
 }
 
-json append_maps(std::string& html, const ViewRun& run, const std::string& id) {
+json append_maps(Arrays& arrays, const ViewRun& run) {
   json maps = json::array();
-  for (const ViewMap& map : run.maps) {
-    append_array(html, id + "-map" + std::to_string(maps.size()), bytes_of(std::span<const float>(map.values)));
-    maps.push_back({{"name", map.name}, {"unit", map.unit}, {"low", map.low}, {"high", map.high}});
-  }
+  for (const ViewMap& map : run.maps)
+    maps.push_back({{"name", map.name},
+                    {"unit", map.unit},
+                    {"low", map.low},
+                    {"high", map.high},
+                    {"values", arrays.add(bytes_of(std::span<const float>(map.values)))}});
   return maps;
 }
 
-json append_run(std::string& html, const ViewRun& run, const std::string& id, std::size_t limit) {
-  const TrajectoryInfo& info = run.info;
-  const std::vector<int> drawn = drawn_frames(run.frame_count, bytes_a_frame(info), limit);
-  Track cloth;
-  std::vector<Track> bodies(info.obstacles.size());
-  Series series;
+// What is drawn of a run: the frames, positions in them, marked triangles.
+struct Drawn {
+  std::vector<int> frames;
+  PackedPositions cloth;
+  std::vector<PackedPositions> bodies;
   json marked = json::array();
-  for (int index = 0, next = 0; index < run.frame_count; ++index) {
-    const Frame frame = run.frame(index);
-    series.append(frame);
-    if (drawn[next] != index) continue;
-    cloth.append(frame.x);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      if (index == 0 || info.obstacles[b].moving) bodies[b].append(frame.obstacles[b]);
-    marked.push_back(frame.bad_triangles);
-    next = std::min(next + 1, static_cast<int>(drawn.size()) - 1);
-  }
 
-  append_triangles(html, id + "-triangles", info.triangles);
-  append_array(html, id + "-metric", bytes_of(std::span<const float>(inverse_rest_metric(info.rest_triangle))));
-  append_array(html, id + "-x", bytes_of(std::span<const std::uint16_t>(cloth.values)));
+  void append(const TrajectoryInfo& info, int index, const Frame& frame) {
+    if (frames.empty()) {
+      cloth.step = grid_step(frame.x);
+      bodies.resize(info.obstacles.size());
+      for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].step = grid_step(frame.obstacles[b]);
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (frames.empty() || info.obstacles[b].moving) selvedge::append(bodies[b], frame.obstacles[b]);
+    selvedge::append(cloth, frame.x);
+    frames.push_back(index);
+    marked.push_back(frame.bad_triangles);
+  }
+  std::size_t text_bytes() const {
+    std::size_t sum = cloth.bytes.size();
+    for (const PackedPositions& body : bodies) sum += body.bytes.size();
+    return sum * 4 / 3;
+  }
+};
+
+// The first frames of `wanted` that the limit has room for, and two of them at least.
+Drawn drawn_of(const ViewRun& run, const std::vector<int>& wanted, std::size_t limit) {
+  Drawn drawn;
+  for (std::size_t k = 0; k < wanted.size() && (wanted.size() <= 2 || drawn.text_bytes() <= limit); ++k)
+    drawn.append(run.info, wanted[k], run.frame(wanted[k]));
+  return drawn;
+}
+
+// Every k-th frame and the last, with a k for which their text is within the limit.
+Drawn drawn_within(const ViewRun& run, std::size_t limit) {
+  for (int stride = 1;;) {
+    const std::vector<int> wanted = drawn_frames(run.frame_count, stride);
+    Drawn drawn = drawn_of(run, wanted, limit);
+    if (wanted.size() <= 2 || (drawn.frames.size() == wanted.size() && drawn.text_bytes() <= limit)) return drawn;
+    const double fit = static_cast<double>(drawn.frames.size()) / static_cast<double>(wanted.size());
+    stride = std::max(stride + 1, static_cast<int>(stride / fit));
+  }
+}
+
+json describe(Arrays& arrays, const PackedPositions& packed) {
+  json absent = json::object();
+  for (std::size_t f = 0; f < packed.absent.size(); ++f)
+    if (!packed.absent[f].empty()) absent[std::to_string(f)] = packed.absent[f];
+  return {{"step", packed.step}, {"frames", packed.frames}, {"absent", absent}, {"bytes", arrays.add(closed(packed))}};
+}
+
+json append_run(Arrays& arrays, const ViewRun& run, std::size_t limit) {
+  const TrajectoryInfo& info = run.info;
+  Series series;
+  for (int index = 0; index < run.frame_count; ++index) series.append(run.frame(index));
+  const Drawn drawn = drawn_within(run, limit);
   json j = describe(run);
-  j["maps"] = append_maps(html, run, id);
+  j["triangleArray"] = arrays.add(info.triangles);
+  j["metric"] = arrays.add(bytes_of(std::span<const float>(inverse_rest_metric(info.rest_triangle))));
+  j["positions"] = describe(arrays, drawn.cloth);
+  j["maps"] = append_maps(arrays, run);
   j["table"] = {{"titles", run.table.titles}, {"rows", run.table.rows}};
-  j["drawn"] = drawn;
-  j["boxes"] = cloth.boxes;
-  j["marked"] = marked;
+  j["drawn"] = drawn.frames;
+  j["marked"] = drawn.marked;
   j["series"] = series.numbers;
   j["obstacles"] = json::array();
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (std::size_t b = 0; b < drawn.bodies.size(); ++b) {
     const auto& body = info.obstacles[b];
-    const std::string body_id = id + "-body" + std::to_string(b);
-    append_triangles(html, body_id + "-triangles", body.triangles);
-    append_array(html, body_id + "-x", bytes_of(std::span<const std::uint16_t>(bodies[b].values)));
-    j["obstacles"].push_back(
-        {{"name", body.name}, {"moving", body.moving}, {"vertices", body.vertex_count}, {"boxes", bodies[b].boxes}});
+    j["obstacles"].push_back({{"name", body.name},
+                              {"moving", body.moving},
+                              {"vertices", body.vertex_count},
+                              {"triangleArray", arrays.add(body.triangles)},
+                              {"positions", describe(arrays, drawn.bodies[b])}});
   }
   return j;
 }
@@ -136,27 +163,6 @@ std::string script_json(const json& j) {
 }
 
 }  // namespace
-
-QuantisedPoints quantise(const PointsF& x) {
-  QuantisedPoints q;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    if (!x.row(i).allFinite()) continue;
-    low = low.cwiseMin(x.row(i).transpose().cast<double>());
-    high = high.cwiseMax(x.row(i).transpose().cast<double>());
-  }
-  if (low.allFinite()) {
-    q.origin = low;
-    q.step = (high - low) / (levels - 1);
-  }
-  q.levels.reserve(3 * x.rows());
-  for (Eigen::Index i = 0; i < x.rows(); ++i)
-    for (int k = 0; k < 3; ++k)
-      q.levels.push_back(!x.row(i).allFinite() ? not_finite
-                         : q.step[k] > 0 ? static_cast<std::uint16_t>(std::lround((x(i, k) - q.origin[k]) / q.step[k]))
-                                         : 0);
-  return q;
-}
 
 std::vector<float> inverse_rest_metric(const std::vector<RestTriangle>& rest) {
   std::vector<float> h;
@@ -184,11 +190,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-std::vector<int> drawn_frames(int frame_count, std::size_t bytes_a_frame, std::size_t limit) {
-  const std::size_t fit = std::max<std::size_t>(2, bytes_a_frame > 0 ? limit / bytes_a_frame : frame_count);
-  int stride = 1;
-  const auto kept = [&] { return (frame_count - 1) / stride + 1 + ((frame_count - 1) % stride != 0); };
-  while (static_cast<std::size_t>(kept()) > fit) ++stride;
+std::vector<int> drawn_frames(int frame_count, int stride) {
   std::vector<int> drawn;
   for (int index = 0; index < frame_count; index += stride) drawn.push_back(index);
   if (frame_count > 0 && drawn.back() != frame_count - 1) drawn.push_back(frame_count - 1);
@@ -196,12 +198,10 @@ std::vector<int> drawn_frames(int frame_count, std::size_t bytes_a_frame, std::s
 }
 
 std::string view_data(const std::vector<ViewRun>& runs, std::size_t limit) {
-  std::string html;
+  Arrays arrays;
   json all = {{"program", program_version()}, {"runs", json::array()}};
-  for (std::size_t r = 0; r < runs.size(); ++r)
-    all["runs"].push_back(append_run(html, runs[r], "run" + std::to_string(r), limit / runs.size()));
-  html += "<script type=\"application/json\" id=\"runs\">" + script_json(all) + "</script>\n";
-  return html;
+  for (const ViewRun& run : runs) all["runs"].push_back(append_run(arrays, run, limit / runs.size()));
+  return arrays.html + "<script type=\"application/json\" id=\"runs\">" + script_json(all) + "</script>\n";
 }
 
 }  // namespace selvedge

@@ -7,12 +7,13 @@
 namespace selvedge {
 namespace {
 
-std::string read_package_file(const std::filesystem::path& file) {
-  std::string text = whole_file(file);
+std::string embedded_or_in(const std::filesystem::path& folder, const char* file, std::string_view embedded) {
+  std::string text = folder.empty() ? std::string(embedded) : whole_file(folder / file);
   if (text.empty())
-    throw Error("three.js is absent, and the page is drawn with it", file.string(),
+    throw Error("three.js is absent, and the page is drawn with it",
+                folder.empty() ? "this program was built without it" : (folder / file).string(),
                 "install the package libjs-three (apt install libjs-three), or configure with "
-                "-DSELVEDGE_THREE_DIR=FOLDER");
+                "-DSELVEDGE_THREE_DIR=FOLDER; then build anew");
   return text;
 }
 
@@ -38,11 +39,10 @@ std::string view_page(const std::vector<ViewRun>& runs, const ViewOptions& optio
   if (runs.empty()) throw Error("no run to show", "view", "name at least one trajectory");
   for (const ViewRun& run : runs)
     if (run.frame_count <= 0) throw Error("the run has no full frame", run.name, "wait for its first frame");
-  const std::filesystem::path folder = options.three.empty() ? SELVEDGE_THREE_DIR : options.three;
-  const std::string three = read_package_file(folder / "three.min.js");
-  const std::string orbit = read_package_file(folder / "examples/js/controls/OrbitControls.js");
-  const std::string data = view_data(runs, options.limit);
   const PageSources page = page_sources();
+  const std::string three = embedded_or_in(options.three, "three.min.js", page.three);
+  const std::string orbit = embedded_or_in(options.three, "examples/js/controls/OrbitControls.js", page.orbit);
+  const std::string data = view_data(runs, options.limit);
   return fill(page.html,
               {{"style", page.style}, {"three", three}, {"orbit", orbit}, {"data", data}, {"script", page.script}});
 }

@@ -1,6 +1,7 @@
 #include "pipeline/view/view.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <limits>
@@ -38,19 +39,6 @@ ViewRun falling_grid(int n, int frames) {
 
 }  // namespace
 
-TEST_CASE("view: positions come back to half a level of their box, and what is not finite is named", "[view]") {
-  PointsF x(4, 3);
-  x << -1, 0.5f, 2, 3, 0.5f, -7, 0.25f, 0.5f, 1, 9, std::numeric_limits<float>::quiet_NaN(), 9;
-  const QuantisedPoints q = quantise(x);
-  REQUIRE(q.levels.size() == 12);
-  for (int v = 0; v < 3; ++v)
-    for (int k = 0; k < 3; ++k)
-      CHECK(std::abs(q.origin[k] + q.step[k] * q.levels[3 * v + k] - x(v, k)) <= 0.51 * q.step[k]);
-  CHECK(q.step.x() == Approx(4.0 / 65534));
-  for (int k = 0; k < 3; ++k) CHECK(q.levels[9 + k] == 65535);
-  CHECK(quantise(PointsF::Constant(2, 3, INFINITY)).levels == std::vector<std::uint16_t>(6, 65535));
-}
-
 TEST_CASE("view: the embedded metric gives the principal stretches", "[view]") {
   const RestTriangle rest = flatten({0, 0, 0}, {0.02, 0, 0.001}, {0.005, 0, 0.03});
   const std::vector<float> h = inverse_rest_metric({rest, RestTriangle::Zero()});
@@ -75,11 +63,36 @@ TEST_CASE("view: base64", "[view]") {
 }
 
 TEST_CASE("view: frames are left out evenly when a run is too large, never the first or the last", "[view]") {
-  CHECK(drawn_frames(5, 10, 1000) == std::vector<int>{0, 1, 2, 3, 4});
-  CHECK(drawn_frames(10, 10, 60) == std::vector<int>{0, 2, 4, 6, 8, 9});
-  CHECK(drawn_frames(10, 10, 59) == std::vector<int>{0, 3, 6, 9});
-  CHECK(drawn_frames(10, 10, 1) == std::vector<int>{0, 9});
-  CHECK(drawn_frames(1, 10, 1) == std::vector<int>{0});
+  CHECK(drawn_frames(5, 1) == std::vector<int>{0, 1, 2, 3, 4});
+  CHECK(drawn_frames(10, 2) == std::vector<int>{0, 2, 4, 6, 8, 9});
+  CHECK(drawn_frames(10, 3) == std::vector<int>{0, 3, 6, 9});
+  CHECK(drawn_frames(10, 40) == std::vector<int>{0, 9});
+  CHECK(drawn_frames(1, 2) == std::vector<int>{0});
+  const ViewRun run = falling_grid(64, 90);
+  const auto drawn_count = [&](std::size_t limit) {
+    const std::string data = view_data({run}, limit);
+    const std::string list =
+        data.substr(data.find("\"drawn\":["), data.find(']', data.find("\"drawn\":[")) - data.find("\"drawn\":["));
+    CHECK(list.ends_with("89"));
+    return 1 + std::count(list.begin(), list.end(), ',');
+  };
+  CHECK(drawn_count(60'000'000) == 90);
+  const auto half = drawn_count(view_data({run}, 60'000'000).size() / 2);
+  CHECK(half > 10);
+  CHECK(half < 90);
+  CHECK(drawn_count(1) == 2);
+}
+
+TEST_CASE("view: what runs share stands in the page once", "[view]") {
+  const std::string one = view_data({falling_grid(40, 30)}, 60'000'000);
+  const std::string two = view_data({falling_grid(40, 30), falling_grid(40, 30)}, 60'000'000);
+  const auto scripts = [](const std::string& html) {
+    std::size_t count = 0;
+    for (std::size_t at = html.find("text/plain"); at != std::string::npos; at = html.find("text/plain", at + 1))
+      ++count;
+    return count;
+  };
+  CHECK(scripts(one) == scripts(two));
 }
 
 TEST_CASE("view: the page is whole, small and refers to nothing outside", "[view]") {
@@ -92,9 +105,9 @@ TEST_CASE("view: the page is whole, small and refers to nothing outside", "[view
     CHECK(page.find(part) != std::string::npos);
   for (const char* part : {"{{", "</script><b>", "src=", "@import", "href=\"http"})
     CHECK(page.find(part) == std::string::npos);
-  CHECK(page.size() < 3'500'000);
+  CHECK(page.size() < 1'500'000);
   ViewOptions tight = options;
-  tight.limit = 400'000;
+  tight.limit = 40'000;
   CHECK(view_page({run}, tight).size() < 900'000);
 }
 

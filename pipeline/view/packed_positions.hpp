@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipeline/formats/trajectory.hpp"
+
+namespace selvedge {
+
+// Positions of a surface over frames as few bytes: whole steps of one grid, each predicted from the frames before and
+// from the vertex before it; what is left is written in Rice codes (R. F. Rice, JPL 79-22, 1979). data.js reads them.
+//
+// A frame has, for x, y and z in turn: a bit for the prediction in time (0: as in the frame before, 1: on the line
+// through the two frames before), a bit for whether a vertex's rest is told against that of the vertex before it, five
+// bits for the code's parameter k, then a code a vertex. Bits are read from the highest of a byte on.
+struct PackedPositions {
+  double step = 0;  // of the grid [m]
+  std::string bytes;
+  int frames = 0;
+  std::vector<std::vector<int>> absent;  // by frame: vertices that are not finite, or 2^30 steps and more away
+
+  std::vector<std::int64_t> last, before_last;  // steps in the two frames before, 3 a vertex
+  unsigned open_bits = 0;                       // of the last byte, those that are not yet in `bytes`
+  int open_count = 0;
+};
+
+// A step of at most 0.1 mm, and of a 32,768th of the longest side of the box round these positions [m].
+double grid_step(const PointsF&);
+
+// Adds a frame; all frames have as many vertices. The code is whole at any time once `closed` was called on a copy.
+void append(PackedPositions&, const PointsF&);
+std::string closed(const PackedPositions&);
+
+}  // namespace selvedge
