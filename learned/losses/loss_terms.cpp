@@ -20,6 +20,7 @@ const LossRamp& weight_in(const LossOptions& options) {
 bool has_forces(const LossInputs& in) { return in.acceleration; }
 bool has_gravity_alone(const LossInputs& in) { return !in.acceleration; }
 bool has_contours(const LossInputs& in) { return in.contours; }
+bool has_target(const LossInputs& in) { return in.target; }
 
 double contour_loss(const LossFrame& f, Points* g) {
   const SheetView sheet{&f.garment.surface, &f.x};
@@ -70,7 +71,9 @@ constexpr LossRow loss_table[]{
        return vertex_repulsion_loss(f.garment.surface, options.distance, options.power, f.x, g);
      }},
     {"contours", "contours.weight", "squared lengths along intersection contours", weight_in<&LossOptions::contours>,
-     has_contours, contour_loss}};
+     has_contours, contour_loss},
+    {"targets", "targets", "distance to the frame that the solver makes", weight_in<&LossOptions::targets>, has_target,
+     [](const LossFrame& f, Points* g) { return target_loss(f.garment, *f.in.target, f.x, g); }}};
 
 }  // namespace
 

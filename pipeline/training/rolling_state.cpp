@@ -39,6 +39,7 @@ void set_surroundings(RollingState& state) {
   state.now.guess.resize(0, 3);
   state.now.force.resize(0, 3);
   state.now.pass = state.pass = 0;
+  state.taught = {};
 }
 
 bool is_lost(const RollingState& state, double reset_distance) {
@@ -58,6 +59,7 @@ void begin_roll(Roll roll, RollingState& state) {
   state.over = false;
   state.search = {};
   state.losses = {};
+  state.solver = nullptr;
   const Roll& own = state.roll;
   state.now.x = own.start;
   if (own.request.still) {
@@ -93,6 +95,7 @@ LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const
   inputs.is_initial = is_settling(state);
   if (!state.body_left_out.empty()) inputs.body_left_out = &state.body_left_out;
   if (state.now.acceleration.rows() > 0) inputs.acceleration = &state.now.acceleration;
+  if (state.taught.valid() && state.taught.get().x.rows() > 0) inputs.target = &state.taught.get().x;
   inputs.progress = progress;
   return inputs;
 }

@@ -120,6 +120,14 @@ void take_measure(TrainingRun& run) {
   write_tables(run);
 }
 
+// What the teacher does for the run, as the end of a line; empty without a teacher.
+std::string teacher_text(const TrainingRun& run) {
+  if (!run.trainer->teacher) return "";
+  const TeacherTally tally = run.trainer->teacher->tally();
+  return fmt::format(", {:.3g} targets/s by the solver, waited for it in {:.0f} % of the time", tally.rate(),
+                     100 * tally.waited / std::max(seconds_since(run.started), 1e-9));
+}
+
 void tell(TrainingRun& run, bool now = false) {
   if (!now && seconds_since(run.told) < run.told_every) return;
   run.told = Clock::now();
@@ -129,7 +137,8 @@ void tell(TrainingRun& run, bool now = false) {
   run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g} J, {} bad samples, {} lost roll-outs",
                       counts.step, run.options.steps, rate * run.options.optimiser.batch,
                       rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
-                      counts.bad, counts.lost));
+                      counts.bad, counts.lost) +
+          teacher_text(run));
 }
 
 // Whether something that is done `times` times in the run is due after this step.

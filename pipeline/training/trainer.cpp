@@ -170,6 +170,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->inputs.scene = world_hash(trainer->maker->world);
   trainer->trained_on = trained_on(options.samples);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
+  if (needs_teacher(options)) trainer->teacher = std::make_unique<Teacher>(options.teacher);
   return trainer;
 }
 
@@ -189,6 +190,12 @@ void place_network(Trainer& trainer) {
     trainer.torch->set_weights(trainer.network.weights);
   else
     lay_out(trainer.network);
+}
+
+void teach(Trainer& trainer, RollingState& state) {
+  if (!trainer.teacher) return;
+  trainer.teacher->ask(state);
+  trainer.teacher->wait(state);
 }
 
 void set_guard(const TrainingOptions& options, RollingState& state) {

@@ -176,6 +176,17 @@ const Options<SpaceOptions>& space_options() {
   return table;
 }
 
+const Options<TeacherOptions>& teacher_options() {
+  using O = TeacherOptions;
+  static const Options<O> table(
+      "teacher", "The solver, where the objective has a term that needs its frames.",
+      {choice("quality", &O::quality,
+              {{"converged", TeacherQuality::converged}, {"standard", TeacherQuality::standard}},
+              "How it makes a frame. `converged`: in one substep, solved closely. `standard`: as a scene without "
+              "solver options does.")});
+  return table;
+}
+
 const Options<OptimiserOptions>& optimiser_options() {
   using O = OptimiserOptions;
   static const Options<O> table(
@@ -256,6 +267,17 @@ void check_names(const TrainingOptions& options, const std::string& where) {
   refuse("watch.clip", options.watch.clip, clips);
 }
 
+// The solver knows one material for each cloth, and cloth without triangles cut out.
+void check_teacher(const TrainingOptions& options, const std::string& where) {
+  if (!needs_teacher(options)) return;
+  if (options.samples.sample_materials == MaterialSampling::vertex)
+    throw Error("the solver has one material for each cloth, and cannot teach materials by vertex",
+                where + ": samples.sample_materials", "take `garment` or `none`, or objectives without the solver");
+  if (options.samples.start == GarmentStart::cut)
+    throw Error("the solver cannot teach garments without their intersecting triangles", where + ": samples.start",
+                "take `skinned` or `untangle`, or objectives without the solver");
+}
+
 void read_over_base(const std::filesystem::path& file, const std::vector<std::string>& overrides, int depth,
                     TrainingOptions& options) {
   const Config config = read_config(file, training_options().section, overrides);
@@ -301,6 +323,7 @@ const Options<TrainingOptions>& training_options() {
        section(&O::contact, training_contact_options(), "Pairs of cloth with cloth."),
        section(&O::space, space_options(), "World edges between cloth vertices."),
        section(&O::objective, objective_options(), "Terms of the loss."),
+       section(&O::teacher, teacher_options(), "The solver as teacher."),
        section(&O::optimiser, optimiser_options(), "Optimiser and learning rate."),
        section(&O::watch, watch_options(), "Checkpoints and measurements.")});
   return table;
@@ -326,6 +349,7 @@ TrainingOptions read_training(const std::filesystem::path& file, const std::vect
                             options.pool.states),
                 file.string() + ": optimiser.batch", "give `pool.states` at least as many");
   check_names(options, file.string());
+  check_teacher(options, file.string());
   return options;
 }
 
@@ -342,12 +366,15 @@ TrainingOptions with_absolute_paths(TrainingOptions options) {
 std::string training_reference() {
   std::string page = chapters_below(training_options().section);
   page +=
-      "### Terms of the objective\n\nEach has two columns in `steps.csv`: its value [J], and `_share`, its share of "
+      "### Terms of the objective\n\nEach has two columns in `steps.csv`: its weighted value [J], and `_share`, its "
+      "share of "
       "the gradient.\n\n| term | weight | what is summed up |\n|---|---|---|\n";
   for (const LossRow& row : loss_rows())
     page += fmt::format("| `{}` | `objective.{}` | {} |\n", row.name, row.weighs, row.about);
   return page;
 }
+
+bool needs_teacher(const TrainingOptions& options) { return is_used(options.objective.targets); }
 
 std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   std::vector<std::string> complaints;

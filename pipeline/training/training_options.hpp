@@ -11,6 +11,7 @@
 #include "learned/losses/loss_options.hpp"
 #include "learned/steppers/network_device.hpp"
 #include "pipeline/config/options.hpp"
+#include "pipeline/training/teacher_step.hpp"
 #include "pipeline/training/training_people.hpp"
 
 namespace selvedge {
@@ -131,6 +132,7 @@ struct TrainingOptions {
   ContactOptions contact;
   SpaceOptions space;
   LossOptions objective = fast_losses();
+  TeacherOptions teacher;
   OptimiserOptions optimiser;
   WatchOptions watch;
 };
@@ -153,6 +155,9 @@ TrainingOptions with_absolute_paths(TrainingOptions);
 
 // Every section of a training file as Markdown: the end of docs/training.md.
 std::string training_reference();
+
+// Whether a term of the objective needs frames of the solver at some point of the run.
+bool needs_teacher(const TrainingOptions&);
 
 // Complaints, one per line, about ramps that do not reach their full value before the run ends.
 std::vector<std::string> unfinished_ramps(const TrainingOptions&);

@@ -28,6 +28,7 @@ std::string training_page(const TrainingOptions& options, const std::string& ste
   page += chart("Terms of the objective without sign [J]", at, sizes(columns_of(steps, terms)), true);
   page += chart("Share of the gradient", at, columns_of(steps, shares), false);
   page += chart("Norm of the weights' gradient", at, columns_of(steps, {"gradient_norm"}), true);
+  page += chart("Targets a second that the solver makes", at, columns_of(steps, {"targets_per_second"}), false);
   page += chart("Learning rate", at, columns_of(steps, {"learning_rate"}), false);
   page += chart("Excess over the optimum on fixed states [J]", measured,
                 columns_of(measures, {"worn_excess", "minimised_excess"}), true);

@@ -31,7 +31,9 @@ void StepWindow::add(const StepRecord& record) {
 }
 
 std::string steps_header() {
-  std::string line = "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale";
+  std::string line =
+      "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale,"
+      "targets_per_second";
   for (const LossRow& row : loss_rows()) line += fmt::format(",{0},{0}_share", row.name);
   return line + "\n";
 }
@@ -51,9 +53,9 @@ std::string with_columns_of_now(const std::string& steps_csv) {
 
 std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
   const double n = std::max(count_, 1);
-  std::string line =
-      fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g}", trainer.counts.step, progress_of(trainer),
-                  seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n, norm_ / n, scale_ / n);
+  std::string line = fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g},{:.4g}", trainer.counts.step,
+                                 progress_of(trainer), seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n,
+                                 norm_ / n, scale_ / n, trainer.teacher ? trainer.teacher->tally().rate() : 0);
   terms_.resize(loss_rows().size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
   const double mean = mean_sum();

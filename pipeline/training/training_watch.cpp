@@ -64,10 +64,11 @@ RollRequest watched(const WatchOptions& options, const TrainingWorld& world) {
 }
 
 // Every frame of a network of several passes counts as one.
-FixedState fixed_state(const FrameMaking& making, Roll roll, bool skinned) {
+FixedState fixed_state(Trainer& trainer, const FrameMaking& making, Roll roll, bool skinned) {
   FixedState fixed;
   fixed.skinned = skinned;
   begin_roll(std::move(roll), fixed.state);
+  teach(trainer, fixed.state);
   FrameMaking whole = making;
   whole.passes = 1;
   for (int k = 0; !skinned && k < frames_before && !fixed.state.over; ++k) {
@@ -77,6 +78,7 @@ FixedState fixed_state(const FrameMaking& making, Roll roll, bool skinned) {
     NextCloth next{made.x, made.x - seen.x};
     if (is_settling(fixed.state)) next.velocity.setZero();
     take_pass(whole, next, HUGE_VAL, fixed.state);
+    teach(trainer, fixed.state);
   }
   const Points inertial = inertial_of(whole, fixed.state);
   fixed.inertial = sum_at(whole, fixed.state, inertial);
@@ -157,6 +159,7 @@ RollMeasure measure_roll(Trainer& trainer, const Roll& roll) {
     }
     const bool last_pass = state.pass + 1 == making.passes, settling = is_settling(state);
     if (last_pass && !settling) {
+      teach(trainer, state);
       result.energy += sum_at(making, state, next.x);
       const StrainMeasure strain = strain_of(scene, next.x);
       result.strain += strain.mean;
@@ -205,7 +208,7 @@ TrainingWatch make_training_watch(const TrainingOptions& options, Trainer& train
     maker.options.samples.noise = noise;
   });
   for (std::size_t k = 0; k < rolls.size(); ++k)
-    watch.states.push_back(fixed_state(making, std::move(rolls[k]), k % 2 == 0));
+    watch.states.push_back(fixed_state(trainer, making, std::move(rolls[k]), k % 2 == 0));
   return watch;
 }
 
