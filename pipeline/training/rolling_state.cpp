@@ -95,7 +95,11 @@ LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const
   inputs.is_initial = is_settling(state);
   if (!state.body_left_out.empty()) inputs.body_left_out = &state.body_left_out;
   if (state.now.acceleration.rows() > 0) inputs.acceleration = &state.now.acceleration;
-  if (state.taught.valid() && state.taught.get().x.rows() > 0) inputs.target = &state.taught.get().x;
+  if (state.taught.valid()) {
+    const TeacherStep& taught = state.taught.get();
+    if (taught.x.rows() > 0) inputs.target = &taught.x;
+    inputs.potential = taught.potential;
+  }
   inputs.progress = progress;
   return inputs;
 }

@@ -19,14 +19,26 @@ ConventionalOptions options_of(TeacherQuality quality) {
   return options;
 }
 
-// The solver's step of the frame. Makes the stepper before the first frame of a roll-out.
-TeacherStep taught_step(RollSolver& solver, const SolverFrame& frame, const TeacherOptions& options) {
+// What is wanted of the frame. Makes the solver before the first frame of a roll-out.
+TeacherStep taught_step(RollSolver& solver, const SolverFrame& frame, const TeacherOptions& options,
+                        const TeacherWork& work) {
   restore_standard_arithmetic();
-  if (!solver.stepper) solver.stepper = make_teacher_stepper(solver.scene->scene, options);
-  State to;
-  const StepReport report = solver.stepper->step(frame.from, frame.drive, frame.dt, to);
-  if (report.status != StepStatus::accepted) return {{}, "the solver rejected its step"};
-  return {std::move(to.x), ""};
+  const Scene& scene = solver.scene->scene;
+  TeacherStep taught;
+  if (work.targets) {
+    if (!solver.stepper) solver.stepper = make_teacher_stepper(scene, options);
+    State to;
+    const StepReport report = solver.stepper->step(frame.from, frame.drive, frame.dt, to);
+    if (report.status != StepStatus::accepted) return {{}, nullptr, "the solver rejected its step"};
+    taught.x = std::move(to.x);
+  }
+  if (work.potential) {
+    if (!solver.potential) solver.potential = std::make_unique<FramePotential>(scene, options_of(options.quality));
+    if (!solver.potential->begin(frame.from, frame.drive, frame.dt))
+      return {{}, nullptr, "the solver has no potential for its step"};
+    taught.potential = solver.potential.get();
+  }
+  return taught;
 }
 
 }  // namespace
@@ -51,7 +63,8 @@ SolverFrame solver_frame(const RollingState& state) {
   return frame;
 }
 
-Teacher::Teacher(const TeacherOptions& options) : options_(options), thread_([this] { work(); }) {}
+Teacher::Teacher(const TeacherOptions& options, const TeacherWork& work)
+    : options_(options), work_(work), thread_([this] { run(); }) {}
 
 Teacher::~Teacher() {
   {
@@ -64,9 +77,10 @@ Teacher::~Teacher() {
 
 void Teacher::ask(RollingState& state) {
   if (state.taught.valid()) return;
-  if (!state.solver) state.solver = std::make_shared<RollSolver>(RollSolver{state.roll.scene, nullptr});
-  std::packaged_task<TeacherStep()> task(
-      [this, solver = state.solver, frame = solver_frame(state)] { return taught_step(*solver, frame, options_); });
+  if (!state.solver) state.solver = std::make_shared<RollSolver>(RollSolver{state.roll.scene, nullptr, nullptr});
+  std::packaged_task<TeacherStep()> task([this, solver = state.solver, frame = solver_frame(state)] {
+    return taught_step(*solver, frame, options_, work_);
+  });
   state.taught = task.get_future().share();
   {
     const std::lock_guard hold(mutex_);
@@ -88,7 +102,7 @@ TeacherTally Teacher::tally() const {
   return tally_;
 }
 
-void Teacher::work() {
+void Teacher::run() {
   restore_standard_arithmetic();
   use_threads(1);  // the other threads train
   std::unique_lock hold(mutex_);

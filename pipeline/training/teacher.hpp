@@ -20,7 +20,7 @@ SolverFrame solver_frame(const RollingState&);
 
 // The work of a teacher so far.
 struct TeacherTally {
-  long targets = 0;    // frames that it made
+  long targets = 0;    // frames that it made or made the potential of
   double seconds = 0;  // in which it made them
   double waited = 0;   // in which the training waited for it [s]
   double rate() const { return seconds > 0 ? static_cast<double>(targets) / seconds : 0; }  // [1/s]
@@ -30,7 +30,7 @@ struct TeacherTally {
 // Each depends on its state alone. The thread stops at the end, whatever is still asked for.
 class Teacher {
  public:
-  explicit Teacher(const TeacherOptions&);
+  Teacher(const TeacherOptions&, const TeacherWork&);
   ~Teacher();
   Teacher(const Teacher&) = delete;
   Teacher& operator=(const Teacher&) = delete;
@@ -42,8 +42,9 @@ class Teacher {
   TeacherTally tally() const;
 
  private:
-  void work();
+  void run();
   TeacherOptions options_;
+  TeacherWork work_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::packaged_task<TeacherStep()>> tasks_;

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "physics/scene/stepper.hpp"
+#include "physics/steppers/frame_potential.hpp"
 
 namespace selvedge {
 
@@ -18,6 +18,12 @@ struct TeacherOptions {
   TeacherQuality quality = TeacherQuality::converged;
 };
 
+// What the objective needs of the solver.
+struct TeacherWork {
+  bool targets = false, potential = false;
+  bool any() const { return targets || potential; }
+};
+
 // The stepper of a run with recovery from tangled starts. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_teacher_stepper(const Scene&, const TeacherOptions&);
 
@@ -25,12 +31,14 @@ std::unique_ptr<Stepper> make_teacher_stepper(const Scene&, const TeacherOptions
 struct RollSolver {
   std::shared_ptr<const TrainingScene> scene;
   std::unique_ptr<Stepper> stepper;
+  std::unique_ptr<FramePotential> potential;
 };
 
 // What the solver makes of the start of a frame.
 struct TeacherStep {
-  Points x;             // of the cloth at the end of the frame [m]; no rows: the step was rejected
-  std::string refused;  // why it was; empty: it was not
+  Points x;                             // of the cloth at the end of the frame [m]; no rows: not wanted, or rejected
+  FramePotential* potential = nullptr;  // of the RollSolver, until the next frame is asked for; null: not wanted
+  std::string refused;                  // why there is no frame; empty: there is all that is wanted
 };
 
 }  // namespace selvedge

@@ -170,7 +170,8 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->inputs.scene = world_hash(trainer->maker->world);
   trainer->trained_on = trained_on(options.samples);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
-  if (needs_teacher(options)) trainer->teacher = std::make_unique<Teacher>(options.teacher);
+  if (const TeacherWork work = teacher_work(options.objective); work.any())
+    trainer->teacher = std::make_unique<Teacher>(options.teacher, work);
   return trainer;
 }
 

@@ -269,7 +269,7 @@ void check_names(const TrainingOptions& options, const std::string& where) {
 
 // The solver knows one material for each cloth, and cloth without triangles cut out.
 void check_teacher(const TrainingOptions& options, const std::string& where) {
-  if (!needs_teacher(options)) return;
+  if (!teacher_work(options.objective).any()) return;
   if (options.samples.sample_materials == MaterialSampling::vertex)
     throw Error("the solver has one material for each cloth, and cannot teach materials by vertex",
                 where + ": samples.sample_materials", "take `garment` or `none`, or objectives without the solver");
@@ -374,7 +374,7 @@ std::string training_reference() {
   return page;
 }
 
-bool needs_teacher(const TrainingOptions& options) { return is_used(options.objective.targets); }
+TeacherWork teacher_work(const LossOptions& options) { return {is_used(options.targets), is_used(options.potential)}; }
 
 std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   std::vector<std::string> complaints;

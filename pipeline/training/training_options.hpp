@@ -156,8 +156,8 @@ TrainingOptions with_absolute_paths(TrainingOptions);
 // Every section of a training file as Markdown: the end of docs/training.md.
 std::string training_reference();
 
-// Whether a term of the objective needs frames of the solver at some point of the run.
-bool needs_teacher(const TrainingOptions&);
+// What the terms of the objective need of the solver at some point of the run.
+TeacherWork teacher_work(const LossOptions&);
 
 // Complaints, one per line, about ramps that do not reach their full value before the run ends.
 std::vector<std::string> unfinished_ramps(const TrainingOptions&);

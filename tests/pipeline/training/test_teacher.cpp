@@ -59,7 +59,7 @@ TEST_CASE("teacher: its frames are those of the solver from the same state, and 
   State to;
   REQUIRE(solver->step(frame.from, frame.drive, frame.dt, to).status == StepStatus::accepted);
 
-  Teacher teacher({TeacherQuality::standard});
+  Teacher teacher({TeacherQuality::standard}, {.targets = true});
   RollingState other = state_in_motion(70);
   teacher.ask(other);  // what came before changes nothing
   for (int k = 0; k < 2; ++k) {
@@ -81,15 +81,16 @@ TEST_CASE("teacher: a training by targets goes on with the same bits when it is 
   const Folder folder("teacher_resume");
   TrainingOptions options = taught_training();
   options.optimiser.batch = 2;
+  options.objective.potential = {0, 1, 0, 0.05};
   auto whole = make_trainer(options), other = make_trainer(options);
   for (int k = 0; k < 8; ++k) {
     with_threads(1, [&] {
       for (const SampleRecord& sample : train_step(*whole).samples) {
         CHECK(sample.bad == "");
-        REQUIRE(sample.terms.size() == 1);
+        REQUIRE(sample.terms.size() >= 1);
         CHECK(sample.terms[0].name == "targets");
-        CHECK(sample.sum > 0.1);
-        CHECK(sample.sum < 200);  // [mm]
+        CHECK(sample.terms[0].value > 0.1);
+        CHECK(sample.terms[0].value < 200);  // [mm]
       }
     });
     with_threads(2, [&] { train_step(*other); });
@@ -102,6 +103,28 @@ TEST_CASE("teacher: a training by targets goes on with the same bits when it is 
     for (Trainer* trainer : {whole.get(), resumed.get()}) train_step(*trainer);
   CHECK(weights_of(*whole) == weights_of(*resumed));
   CHECK(whole->teacher->tally().targets > 0);
+}
+
+TEST_CASE("teacher: targets and potential are mixed, and agree about where the frame ends", "[training]") {
+  RollingState state = state_in_motion(30);
+  Teacher teacher({}, {.targets = true, .potential = true});
+  teacher.ask(state);
+  const TeacherStep& taught = teacher.wait(state);
+  CHECK(taught.refused == "");
+  LossOptions objective = taught_training().objective;
+  objective.potential = {2, 2};
+  const SeenPositions seen = seen_positions(state.roll.scene->rest, state.now, fake::tiny_making().features);
+  const auto terms_at = [&](const Points& x) {
+    Points gradient = Points::Zero(x.rows(), 3);
+    return add_losses(inputs_of(state, seen, x, 1), objective, state.losses, &gradient);
+  };
+  const Points guess = inertial_guess(state.roll.scene->rest, state.now, seen, fake::tiny_making().features);
+  const std::vector<LossTerm> at_guess = terms_at(guess), at_target = terms_at(taught.x);
+  REQUIRE(at_guess.size() == 2);
+  CHECK(at_guess[1].name == "potential");
+  CHECK(at_target[0].value == 0);
+  CHECK(at_target[1].value < at_guess[1].value);
+  CHECK(at_target[1].gradient_norm < 0.3 * at_guess[1].gradient_norm);
 }
 
 TEST_CASE("teacher: a network that learns from targets comes nearer to them", "[training]") {
@@ -123,12 +146,12 @@ TEST_CASE("teacher: a network that learns from targets comes nearer to them", "[
 }
 
 TEST_CASE("teacher: no term asks for it, and it is not there", "[training]") {
-  CHECK_FALSE(needs_teacher(fake::tiny_training()));
-  CHECK(needs_teacher(taught_training()));
+  CHECK_FALSE(teacher_work(fake::tiny_training().objective).any());
+  CHECK(teacher_work(taught_training().objective).any());
   CHECK_FALSE(make_empty_trainer(fake::tiny_training())->teacher);
   const std::filesystem::path file = config_folder() / "training" / "tiny.yaml";
   const std::string targets = "objective.targets.to=1";
-  CHECK(needs_teacher(read_training(file, {targets})));
+  CHECK(teacher_work(read_training(file, {targets}).objective).targets);
   CHECK_THROWS_WITH(read_training(file, {targets, "samples.sample_materials=vertex"}),
                     Catch::Contains("cannot teach materials by vertex"));
   CHECK_THROWS_WITH(read_training(file, {targets, "samples.start=cut"}),
