@@ -54,6 +54,7 @@ bool is_lost(const RollingState& state, double reset_distance) {
 bool is_settling(const RollingState& state) { return state.roll.request.still && state.frame == 0; }
 
 void begin_roll(Roll roll, RollingState& state) {
+  state.behind = nullptr;  // it refers to the roll-out before
   state.roll = std::move(roll);
   state.frame = 0;
   state.over = false;
@@ -67,7 +68,7 @@ void begin_roll(Roll roll, RollingState& state) {
     state.now.previous = state.now.x;
     state.now.velocity = Points::Zero(state.now.x.rows(), 3);
   } else {
-    state.now.velocity = wide(own.cloth[1]) - wide(own.cloth[0]);
+    state.now.velocity = own.velocity.rows() > 0 ? own.velocity : Points(wide(own.cloth[1]) - wide(own.cloth[0]));
     state.now.previous = state.now.x - state.now.velocity;
   }
   set_surroundings(state);

@@ -3,7 +3,6 @@
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/parallel.hpp"
 #include "collision/geometry/stopwatch.hpp"
-#include "learned/steppers/learned_state.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 
 namespace selvedge {
@@ -45,22 +44,6 @@ TeacherStep taught_step(RollSolver& solver, const SolverFrame& frame, const Teac
 
 std::unique_ptr<Stepper> make_teacher_stepper(const Scene& scene, const TeacherOptions& options) {
   return make_recovering_conventional_stepper(scene, options_of(options.quality));
-}
-
-SolverFrame solver_frame(const RollingState& state) {
-  const Scene& scene = state.roll.scene->scene;
-  SolverFrame frame;
-  frame.dt = state.now.timestep;
-  frame.from.x = state.now.x;
-  frame.from.v = state.now.velocity / learned_dt;
-  frame.drive = state.roll.forces;
-  frame.drive.pins = state.now.target(scene.pins, Eigen::all);
-  if (!scene.obstacles.empty()) {
-    frame.drive.skinned_targets = state.now.target;
-    frame.from.obstacles = {state.now.body};
-    frame.drive.obstacles = {state.now.body_target};
-  }
-  return frame;
 }
 
 Teacher::Teacher(const TeacherOptions& options, const TeacherWork& work)

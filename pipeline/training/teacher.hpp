@@ -6,17 +6,9 @@
 #include <mutex>
 #include <thread>
 
-#include "pipeline/training/rolling_state.hpp"
+#include "pipeline/training/solver_frame.hpp"
 
 namespace selvedge {
-
-// The frame that a state is about to make, as the solver takes it: in m/s, and without memory of earlier frames.
-struct SolverFrame {
-  State from;
-  Drive drive;
-  double dt = 0;  // [s]
-};
-SolverFrame solver_frame(const RollingState&);
 
 // The work of a teacher so far.
 struct TeacherTally {

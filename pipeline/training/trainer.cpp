@@ -202,6 +202,7 @@ void teach(Trainer& trainer, RollingState& state) {
 void set_guard(const TrainingOptions& options, RollingState& state) {
   const bool wanted = options.pool.safeguarded && state.roll.request.cloth_contact;
   state.guard = wanted ? std::make_unique<Safeguard>(state.roll.scene->scene) : nullptr;
+  state.behind = make_behind(state.roll.scene->scene, options.pool.behind);
 }
 
 double progress_of(const Trainer& trainer) { return static_cast<double>(trainer.counts.step) / trainer.options.steps; }

@@ -86,7 +86,7 @@ FrameMaking frame_making(const Trainer&);
 // Has the teacher, if there is one, make the frame that the state is about to make, and waits for it.
 void teach(Trainer&, RollingState&);
 
-// Gives a new roll-out the guard that the options ask for.
+// Gives a new roll-out the guard, and what runs behind the network, that the options ask for.
 void set_guard(const TrainingOptions&, RollingState&);
 
 // The number of requested roll-outs before the pool.

@@ -52,6 +52,9 @@ struct SampleOptions {
   double noise = 3e-3;
   bool yaw = true, mirror = true;
   double no_body_share = 0, folded_share = 0;
+  double simulated_share = 0;
+  int simulated_frames = 20;
+  double noise_share = 0;
   bool soft_tissue = true;
   GarmentStart start = GarmentStart::skinned;
   ForceSampling forces;
@@ -65,6 +68,13 @@ bool has_mannequin(const SampleOptions&);
 // The procedural clips in which the mannequin is trained.
 std::vector<std::string> training_clip_names(const SampleOptions&);
 
+// What runs behind the network where a state goes on to its next frame.
+enum class BehindNetwork {
+  nothing,   // the state is what the network made
+  response,  // Bridson's response to contact, as in the stepper `carried`
+  solve      // one rough solve that begins at what the network made, then the response, as in `carried_rough`
+};
+
 // How states are rolled out. Members are described where keys are bound to them:
 // pipeline/training/training_options.cpp.
 struct PoolOptions {
@@ -77,6 +87,7 @@ struct PoolOptions {
   double long_share = 0;
   int long_frames = 150;
   bool safeguarded = false;
+  BehindNetwork behind = BehindNetwork::nothing;
   double no_contact_share = 0;
 };
 
