@@ -244,6 +244,10 @@ const Options<WatchOptions>& watch_options() {
        text("clip", &O::clip, "Clip of the measuring roll-out, of the training split."),
        integer("fixed_states", &O::fixed_states, at_least_one,
                "Number of fixed states whose gap to the optimum is measured."),
+       integer("taught_rolls", &O::taught_rolls, at_least_one,
+               "Number of roll-outs, each in another clip, that are compared with the solver's where the objective has "
+               "a term that needs the solver. The weights that come nearest to it are kept as `best.h5`."),
+       integer("taught_frames", &O::taught_frames, at_least_one, "Number of frames after which they are compared."),
        integer("most_bad_samples", &O::most_bad_samples, at_least_one,
                "Number of samples in a row without a finite loss after which the run stops."),
        number("keep_at", &O::keep_at, Unit::none, from_0_to_1,

@@ -124,6 +124,7 @@ struct WatchOptions {
   int frames = 60;
   std::string garment, clip = "walk";
   int fixed_states = 8;
+  int taught_rolls = 3, taught_frames = 10;
   int most_bad_samples = 50;
   double keep_at = 0;
 };

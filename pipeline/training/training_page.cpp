@@ -34,6 +34,8 @@ std::string training_page(const TrainingOptions& options, const std::string& ste
                 columns_of(measures, {"worn_excess", "minimised_excess"}), true);
   page +=
       chart("Gap closed on fixed states", measured, columns_of(measures, {"worn_closed", "minimised_closed"}), false);
+  page += chart("Roll-outs with what runs behind the network: distance from the solver at the end [mm]", measured,
+                columns_of(measures, {"taught_distance"}), true);
   page += chart("Roll-out on a training clip: strain", measured, columns_of(measures, {"strain", "strain_99"}), true);
   page += chart("Roll-out: objective [J]", measured, columns_of(measures, {"energy"}), true);
   page += chart("Roll-out: intersecting pairs", measured, columns_of(measures, {"pairs", "pairs_at_end"}), false);

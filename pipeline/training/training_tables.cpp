@@ -67,7 +67,7 @@ std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
 std::string measures_header() {
   return "step,seconds,worn_closed,worn_excess,worn_log_excess,worn_rms,minimised_closed,minimised_excess,"
          "minimised_log_excess,minimised_rms,finite,frames,energy,strain,strain_99,strain_most,deep,deepest,kinetic,"
-         "jitter,pairs,pairs_at_end,volume\n";
+         "jitter,pairs,pairs_at_end,volume,taught_distance\n";
 }
 
 std::string measure_line(const TrainingMeasure& m, double seconds) {
@@ -76,9 +76,9 @@ std::string measure_line(const TrainingMeasure& m, double seconds) {
   };
   const RollMeasure& r = m.roll;
   return fmt::format(
-      "{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{},{:.4g}\n", m.step,
-      seconds, gap(m.skinned), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99, r.strain_most,
-      r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end, 1e6 * r.volume);
+      "{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{},{:.4g},{:.4g}\n",
+      m.step, seconds, gap(m.skinned), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99,
+      r.strain_most, r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end, 1e6 * r.volume, m.taught);
 }
 
 }  // namespace selvedge

@@ -1,9 +1,14 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "collision/geometry/error.hpp"
+#include "collision/search/intersections.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
+#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
@@ -145,6 +150,119 @@ TEST_CASE("teacher: a network that learns from targets comes nearer to them", "[
   CHECK(last < 0.9 * first);
 }
 
+TEST_CASE("teacher: what runs behind the network keeps a frame out of the body", "[training]") {
+  RollMaker maker = fake::tiny_maker();
+  RollRequest request;
+  request.first_frame = 30;
+  request.frames = 3;
+  request.still = false;
+  request.simulated = 6;
+  RollingState state;
+  begin_roll(make_roll(maker, request), state);
+  const Scene& scene = state.roll.scene->scene;
+  const auto pairs_with_body = [&](const Points& x) {
+    const Points body = state.now.body_target;
+    Triangles all(scene.surface.triangles.rows() + scene.obstacles[0].surface.triangles.rows(), 3);
+    all << scene.surface.triangles,
+        (scene.obstacles[0].surface.triangles.array() + static_cast<int>(x.rows())).matrix();
+    Points both(x.rows() + body.rows(), 3);
+    both << x, body;
+    const Surface whole = make_surface(static_cast<int>(both.rows()), all);
+    IntersectionCache cache;
+    const Eigen::Index cloth = scene.surface.triangles.rows();
+    int count = 0;
+    for (const auto& [a, b] : intersecting_pairs(whole, both, cache)) count += (a < cloth) != (b < cloth);
+    return count;
+  };
+  // The network pulls the garment to the axis of the body.
+  NextCloth proposed{state.now.target, state.now.velocity};
+  const Eigen::RowVector3d middle = proposed.x.colwise().mean();
+  for (const int column : {0, 2}) proposed.x.col(column) = 0.7 * proposed.x.col(column).array() + 0.3 * middle[column];
+  const int pairs = pairs_with_body(proposed.x);
+  REQUIRE(pairs > 100);
+  for (const BehindNetwork behind : {BehindNetwork::response, BehindNetwork::solve}) {
+    state.behind = make_behind(scene, behind);
+    NextCloth next = proposed;
+    REQUIRE(pass_behind(state, next));
+    CHECK(pairs_with_body(next.x) < pairs / 20);  // some where the body crosses itself
+    CHECK((next.velocity - proposed.velocity - (next.x - proposed.x)).norm() < 1e-12);
+  }
+  state.behind = nullptr;
+  NextCloth next = proposed;
+  CHECK(pass_behind(state, next));
+  CHECK(next.x == proposed.x);
+}
+
+TEST_CASE("teacher: shares of roll-outs begin with strong noise, or where the solver brings the cloth", "[training]") {
+  RollMaker maker = fake::tiny_maker();
+  TrainingOptions options = maker.options;
+  options.samples.noise_share = 0.3;
+  options.samples.simulated_share = 0.5;
+  int noisy = 0, simulated = 0;
+  for (std::uint64_t k = 0; k < 300; ++k) {
+    const RollRequest before = draw_roll(maker.options, maker.world, k, 1);
+    RollRequest request = draw_roll(options, maker.world, k, 1);
+    CHECK((request.noise == 0 || (request.noise >= 1e-3 && request.noise <= 1e-2)));
+    CHECK((request.simulated == 0 || (request.simulated == 20 && !request.still)));
+    noisy += request.noise > 0;
+    simulated += request.simulated > 0;
+    request.noise = 0;
+    request.simulated = 0;
+    request.still = before.still;
+    CHECK(request == before);  // shares change nothing else
+  }
+  CHECK(std::abs(noisy - 90) < 30);
+  CHECK(std::abs(simulated - 150) < 35);
+
+  RollRequest request;
+  request.first_frame = 30;
+  request.still = false;
+  request.simulated = 4;
+  const Roll roll = make_roll(maker, request), again = make_roll(maker, request);
+  CHECK(roll.usable);
+  CHECK(roll.start == again.start);
+  RollRequest shorter = request;
+  shorter.first_frame = 29;
+  shorter.simulated = 3;
+  const Roll frame_before = make_roll(maker, shorter);
+  CHECK((roll.start - frame_before.start - roll.velocity).norm() < 0.1 * roll.velocity.norm());
+  RollingState state;
+  begin_roll(roll, state);
+  CHECK(state.now.velocity == roll.velocity);
+  request.noise = 5e-3;
+  const Points noise = make_roll(maker, request).start - roll.start;
+  CHECK(std::sqrt(noise.squaredNorm() / static_cast<double>(noise.size())) == Approx(5e-3).epsilon(0.1));
+  CHECK(noise.row(roll.scene->rest.pinned[0]).isZero(0));
+}
+
+TEST_CASE("teacher: the best weights are those that come nearest to the solver's roll-out", "[training]") {
+  const Folder folder("teacher_best");
+  std::ostringstream log;
+  TrainRequest request{
+      config_folder() / "training" / "tiny.yaml",
+      {"steps=24", "pool.states=3", "pool.behind=response", "optimiser.warm_up=3", "watch.frames=3",
+       "watch.fixed_states=2", "watch.taught_rolls=1", "watch.taught_frames=3", "watch.measurements=4",
+       "samples.simulated_frames=3", "samples.still_share=0", "objective.targets.from=1", "objective.targets.to=1"},
+      folder.path / "run",
+      false,
+      &log,
+      {}};
+  const TrainSummary summary = train(request);
+  CHECK(summary.finished);
+  CHECK(summary.score_unit == "mm");
+  const CsvColumns measures(fake::whole(request.out / "measures.csv"));
+  const std::vector<double>&distance = measures["taught_distance"], &step = measures["step"];
+  REQUIRE(distance.size() == 5);
+  const auto best = std::ranges::min_element(distance.begin() + 1, distance.end());  // not before the first step
+  CHECK(summary.best_score == Approx(*best).epsilon(1e-3));
+  CHECK(summary.best_step == static_cast<long>(step[static_cast<std::size_t>(best - distance.begin())]));
+  CHECK(*best > 0.05);
+  CHECK(*best < 100);
+  CHECK(CsvColumns(fake::whole(request.out / "steps.csv"))["targets_per_second"].back() > 0);
+  CHECK(log.str().find("targets/s by the solver") != std::string::npos);
+  CHECK(log.str().find("mm from the solver after 3 frames") != std::string::npos);
+}
+
 TEST_CASE("teacher: no term asks for it, and it is not there", "[training]") {
   CHECK_FALSE(teacher_work(fake::tiny_training().objective).any());
   CHECK(teacher_work(taught_training().objective).any());
@@ -153,9 +271,11 @@ TEST_CASE("teacher: no term asks for it, and it is not there", "[training]") {
   const std::string targets = "objective.targets.to=1";
   CHECK(teacher_work(read_training(file, {targets}).objective).targets);
   CHECK_THROWS_WITH(read_training(file, {targets, "samples.sample_materials=vertex"}),
-                    Catch::Contains("cannot teach materials by vertex"));
+                    Catch::Contains("no materials by vertex"));
   CHECK_THROWS_WITH(read_training(file, {targets, "samples.start=cut"}),
                     Catch::Contains("without their intersecting triangles"));
+  CHECK_THROWS_WITH(read_training(file, {"pool.behind=response", "pool.safeguarded=true"}),
+                    Catch::Contains("two responses"));
 }
 
 }  // namespace selvedge::test_teacher
