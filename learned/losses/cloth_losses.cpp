@@ -138,4 +138,22 @@ double repulsion_loss(const LossGarment& garment, const RepulsionLoss& options, 
   return sum;
 }
 
+double target_loss(const LossGarment& garment, const Points& target, const Points& x, Points* gradient) {
+  constexpr double millimetres = 1000;
+  const auto mass_of = [&](Eigen::Index v) {
+    return garment.pinned[static_cast<std::size_t>(v)] ? 0 : garment.mass[static_cast<std::size_t>(v)];
+  };
+  double mass = 0, squares = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    mass += mass_of(v);
+    squares += mass_of(v) * (x.row(v) - target.row(v)).squaredNorm();
+  }
+  if (!(mass > 0)) return 0;
+  const double distance = std::sqrt(squares / mass);
+  if (gradient && distance > 0)
+    for (Eigen::Index v = 0; v < x.rows(); ++v)
+      gradient->row(v) += millimetres * mass_of(v) / (mass * distance) * (x.row(v) - target.row(v));
+  return millimetres * distance;
+}
+
 }  // namespace selvedge

@@ -35,4 +35,8 @@ double inertia_loss(const LossGarment&, const Points& now, const Points& velocit
 double repulsion_loss(const LossGarment&, const RepulsionLoss&, std::span<const ClothPair>, const Points& now,
                       const Points& x, Points* gradient);
 
+// 1000 sqrt(sum of m |x - target|^2 / sum of m), the distance from a target, over the vertices that have a mass and are
+// not pinned [mm, not J]; the derivative is in mm/m. At the target the derivative counts as 0.
+double target_loss(const LossGarment&, const Points& target, const Points& x, Points* gradient);
+
 }  // namespace selvedge

@@ -97,6 +97,7 @@ struct LossOptions {
   ContourLoss contours;
   VolumeLoss volume;
   VertexRepulsionLoss vertex_repulsion;
+  LossRamp targets{0, 0}, potential{0, 0};
   double gravity_strength = 9.81;
   double relaxation_dt = 1.0 / 3;
 };

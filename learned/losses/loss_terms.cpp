@@ -4,6 +4,7 @@
 #include "learned/losses/body_losses.hpp"
 #include "learned/losses/cloth_losses.hpp"
 #include "learned/losses/volume_loss.hpp"
+#include "physics/steppers/frame_potential.hpp"
 
 namespace selvedge {
 namespace {
@@ -20,6 +21,8 @@ const LossRamp& weight_in(const LossOptions& options) {
 bool has_forces(const LossInputs& in) { return in.acceleration; }
 bool has_gravity_alone(const LossInputs& in) { return !in.acceleration; }
 bool has_contours(const LossInputs& in) { return in.contours; }
+bool has_target(const LossInputs& in) { return in.target; }
+bool has_potential(const LossInputs& in) { return in.potential; }
 
 double contour_loss(const LossFrame& f, Points* g) {
   const SheetView sheet{&f.garment.surface, &f.x};
@@ -70,7 +73,14 @@ constexpr LossRow loss_table[]{
        return vertex_repulsion_loss(f.garment.surface, options.distance, options.power, f.x, g);
      }},
     {"contours", "contours.weight", "squared lengths along intersection contours", weight_in<&LossOptions::contours>,
-     has_contours, contour_loss}};
+     has_contours, contour_loss},
+    {"targets", "targets", "distance to the frame that the solver makes", weight_in<&LossOptions::targets>, has_target,
+     [](const LossFrame& f, Points* g) { return target_loss(f.garment, *f.in.target, f.x, g); }},
+    {"potential", "potential", "what the solver minimises in one substep a frame, with its contact and friction",
+     weight_in<&LossOptions::potential>, has_potential, [](const LossFrame& f, Points* g) {
+       f.in.potential->lag(f.x);
+       return f.in.potential->at(f.x, g);
+     }}};
 
 }  // namespace
 

@@ -22,6 +22,7 @@ void check_inputs(const LossInputs& in) {
   check_rows(in.velocity, vertices, "velocities");
   check_rows(in.predicted, vertices, "predicted positions");
   if (in.acceleration) check_rows(in.acceleration, vertices, "accelerations");
+  if (in.target) check_rows(in.target, vertices, "targets");
   if (!in.body) return;
   check_rows(in.body_previous, in.body->vertex_count, "the body's previous positions");
   check_rows(in.body_now, in.body->vertex_count, "the body's positions");

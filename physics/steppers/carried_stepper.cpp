@@ -5,7 +5,7 @@
 #include "physics/scene/joint_lists.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/contact_stage.hpp"
-#include "physics/steppers/finish_step.hpp"
+#include "physics/steppers/response_stepper.hpp"
 
 namespace selvedge {
 namespace {
@@ -53,18 +53,11 @@ StepReport CarriedStepper::take_step(const State& from, const Drive& drive, doub
   StepReport report;
   report.by = traits_.name;
   report.substeps = 1;
-  reject(Reason::not_finite, report);
-  Points x = carried_guess(scene_, from, drive, dt, options_);
-  if (!x.allFinite()) return report;
-  std::vector<Points> obstacles = drive.obstacles;
-  ResolveOptions options = contact_.options;
-  options.stop = stop;
-  const ResolveReport resolved = resolve_proposal(contact_, options, from, nullptr, x, obstacles);
-  add(resolved, report);
-  report.reason = resolved.stopped ? Reason::stopped : x.allFinite() ? Reason::none : Reason::not_finite;
-  if (report.reason != Reason::none) return report;
-  StepEnd end{x, (x - from.x) / dt, std::move(obstacles), carried_memory(from, drive, x)};
-  finish_step(from, drive, dt, std::move(end), to, report);
+  auto end =
+      responded_end(contact_, from, drive, dt, carried_guess(scene_, from, drive, dt, options_), nullptr, stop, report);
+  if (!end) return report;
+  end->memory = carried_memory(from, drive, end->x);
+  finish_step(from, drive, dt, *std::move(end), to, report);
   return report;
 }
 

@@ -59,7 +59,7 @@ class ConventionalStepper final : public Stepper {
         euler_torque_(scene),
         energy_(scene),
         edge_length_(mean_edge_length(scene)),
-        traits_{.name = "conventional",
+        traits_{.name = options.name,
                 .past_frames = options.integrator == Integrator::bdf2 || options.guess == FirstGuess::carried ? 1 : 0,
                 .honours_extras = true,
                 .max_substeps = options.substeps.value_or(options.max_substeps)} {}
@@ -430,6 +430,16 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
 }
 
 }  // namespace
+
+// Measured in docs/benchmarks.md.
+ConventionalOptions one_rough_solve(ConventionalOptions options) {
+  options.substeps = 1;
+  options.implicit_euler.max_newton = 2;
+  options.implicit_euler.relative_tolerance = 0.03;
+  options.implicit_euler.max_newton_step = 16;
+  options.substep.max_passes = 0;
+  return options;
+}
 
 std::unique_ptr<Stepper> make_conventional_stepper(const Scene& scene, const ConventionalOptions& options) {
   return std::make_unique<ConventionalStepper>(scene, options);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "collision/contact/resolve_options.hpp"
 #include "physics/scene/stepper.hpp"
@@ -29,7 +30,11 @@ struct ConventionalOptions {
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
   ResolveOptions resolve;
+  std::string name = "conventional";  // of the stepper, in reports
 };
+
+// The same options for one rough solve a frame and then the response to contact, as `run.quality: draft` solves.
+ConventionalOptions one_rough_solve(ConventionalOptions);
 
 // Implicit Euler or BDF2, then the response to contact in Bridson's order. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_conventional_stepper(const Scene&, const ConventionalOptions&);

@@ -43,6 +43,26 @@ std::vector<PlanLine> icm_lines(const Setup& setup) {
           {"obstacles that give way", false, untouched + ": they are where they are wanted"}};
 }
 
+// What the scene says of the number and the accuracy of solves is replaced.
+ConventionalOptions carried_rough_options(const Setup& setup) {
+  ConventionalOptions options = one_rough_solve(setup.run.conventional);
+  options.guess = FirstGuess::carried;
+  options.integrator = Integrator::implicit_euler;
+  options.name = "carried_rough";
+  return options;
+}
+
+std::vector<PlanLine> carried_rough_lines(const Setup&) {
+  return {{"carried guess", true, "the solve begins there where the potential is lower than as the cloth moves"},
+          {"solve", true, "one, rough, whatever run.quality and solver say: as run.quality: draft"}};
+}
+
+StepperKind carried_rough_kind() {
+  StepperKind kind{.name = "carried_rough", .plan = carried_rough_lines};
+  kind.maker = [](const Setup& setup, const Config&) { return conventional_maker(carried_rough_options(setup)); };
+  return kind;
+}
+
 StepperKind icm_kind() {
   StepperKind kind{.name = "icm", .plan = icm_lines};
   kind.maker = [](const Setup& setup, const Config&) -> MakeStepper {
@@ -136,7 +156,8 @@ StepperKind hybrid_kind() {
 
 Kinds known_kinds() {
   Kinds kinds;
-  for (StepperKind& kind : std::vector{conventional_kind(), carried_kind(), icm_kind(), learned_kind(), hybrid_kind()})
+  for (StepperKind& kind : std::vector{conventional_kind(), carried_kind(), carried_rough_kind(), icm_kind(),
+                                       learned_kind(), hybrid_kind()})
     kinds.add(std::move(kind));
   return kinds;
 }

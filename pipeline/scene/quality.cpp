@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "physics/steppers/conventional_stepper.hpp"
 
 namespace selvedge {
 namespace {
@@ -19,23 +22,24 @@ struct QualityLevel {
 };
 
 // Measured in docs/benchmarks.md.
+std::vector<QualityLevel> make_levels() {
+  const ConventionalOptions rough = one_rough_solve({});
+  std::vector<QualityValue> preview{
+      {"run.substeps", static_cast<double>(*rough.substeps)},
+      {"solver.max_newton", static_cast<double>(rough.implicit_euler.max_newton)},
+      {"solver.relative_tolerance", rough.implicit_euler.relative_tolerance},
+      {"solver.max_newton_step", static_cast<double>(rough.implicit_euler.max_newton_step)}};
+  std::vector<QualityValue> draft = preview;
+  draft.push_back({"solver.substep.max_passes", static_cast<double>(rough.substep.max_passes)});
+  draft.push_back({"solver.guess", 0, "carried"});
+  return {{"draft", "", std::move(draft)},
+          {"preview", "", std::move(preview)},
+          {"standard", "every key's default", {}},
+          {"fine", "", {{"run.min_substeps", 4}, {"solver.integrator", 0, "bdf2"}}}};
+}
+
 const std::vector<QualityLevel>& levels() {
-  static const std::vector<QualityLevel> all{{"draft",
-                                              "",
-                                              {{"run.substeps", 1},
-                                               {"solver.max_newton", 2},
-                                               {"solver.relative_tolerance", 0.03},
-                                               {"solver.max_newton_step", 16},
-                                               {"solver.substep.max_passes", 0},
-                                               {"solver.guess", 0, "carried"}}},
-                                             {"preview",
-                                              "",
-                                              {{"run.substeps", 1},
-                                               {"solver.max_newton", 2},
-                                               {"solver.relative_tolerance", 0.03},
-                                               {"solver.max_newton_step", 16}}},
-                                             {"standard", "every key's default", {}},
-                                             {"fine", "", {{"run.min_substeps", 4}, {"solver.integrator", 0, "bdf2"}}}};
+  static const std::vector<QualityLevel> all = make_levels();
   return all;
 }
 

@@ -147,6 +147,12 @@ const Options<LossOptions>& objective_options() {
        section(&O::contours, contour_options(), "Length of intersection contours."),
        section(&O::volume, volume_options(), "Volume that self-penetrating cloth encloses."),
        section(&O::vertex_repulsion, vertex_repulsion_options(), "Repulsion between vertices."),
+       ramp("targets", &O::targets,
+            "Weight of the distance to the frame that the solver makes from the same state [J/mm]: the root of the "
+            "mean square over the masses."),
+       ramp("potential", &O::potential,
+            "Weight of the incremental potential that the solver minimises: inertia, elasticity, contact and friction, "
+            "in one substep a frame."),
        number("gravity_strength", &O::gravity_strength, Unit::none, not_negative,
               "Acceleration by gravity, against y [m/s2]."),
        number("relaxation_dt", &O::relaxation_dt, Unit::time, positive,

@@ -39,6 +39,7 @@ void set_surroundings(RollingState& state) {
   state.now.guess.resize(0, 3);
   state.now.force.resize(0, 3);
   state.now.pass = state.pass = 0;
+  state.taught = {};
 }
 
 bool is_lost(const RollingState& state, double reset_distance) {
@@ -53,11 +54,13 @@ bool is_lost(const RollingState& state, double reset_distance) {
 bool is_settling(const RollingState& state) { return state.roll.request.still && state.frame == 0; }
 
 void begin_roll(Roll roll, RollingState& state) {
+  state.behind = nullptr;  // it refers to the roll-out before
   state.roll = std::move(roll);
   state.frame = 0;
   state.over = false;
   state.search = {};
   state.losses = {};
+  state.solver = nullptr;
   const Roll& own = state.roll;
   state.now.x = own.start;
   if (own.request.still) {
@@ -65,7 +68,7 @@ void begin_roll(Roll roll, RollingState& state) {
     state.now.previous = state.now.x;
     state.now.velocity = Points::Zero(state.now.x.rows(), 3);
   } else {
-    state.now.velocity = wide(own.cloth[1]) - wide(own.cloth[0]);
+    state.now.velocity = own.velocity.rows() > 0 ? own.velocity : Points(wide(own.cloth[1]) - wide(own.cloth[0]));
     state.now.previous = state.now.x - state.now.velocity;
   }
   set_surroundings(state);
@@ -93,6 +96,11 @@ LossInputs inputs_of(const RollingState& state, const SeenPositions& seen, const
   inputs.is_initial = is_settling(state);
   if (!state.body_left_out.empty()) inputs.body_left_out = &state.body_left_out;
   if (state.now.acceleration.rows() > 0) inputs.acceleration = &state.now.acceleration;
+  if (state.taught.valid()) {
+    const TeacherStep& taught = state.taught.get();
+    if (taught.x.rows() > 0) inputs.target = &taught.x;
+    inputs.potential = taught.potential;
+  }
   inputs.progress = progress;
   return inputs;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <future>
 #include <vector>
 
 #include "learned/graph/integration.hpp"
@@ -7,6 +8,7 @@
 #include "learned/losses/objective.hpp"
 #include "learned/steppers/safeguard.hpp"
 #include "pipeline/measures/minimise.hpp"
+#include "pipeline/training/teacher_step.hpp"
 #include "pipeline/training/training_roll.hpp"
 
 namespace selvedge {
@@ -18,6 +20,9 @@ struct RollingState {
   GraphState now;                    // the start of the frame, with guess and number of the next pass
   bool over = true;                  // the roll-out has ended
   std::unique_ptr<Safeguard> guard;  // filters the motion of the roll-out; null: none
+  std::unique_ptr<Stepper> behind;   // runs behind the network; null: nothing does
+  std::shared_ptr<RollSolver> solver;      // of a teacher; null: none was asked yet in this roll-out
+  std::shared_future<TeacherStep> taught;  // a teacher's frame from here; invalid: none was asked for
   std::vector<char> body_left_out;   // faces of the body that meet others now or next; empty: none
   // Memory that is used again:
   GraphSearch search;
@@ -39,7 +44,8 @@ void resume_roll(Roll, const KeptRolling&, RollingState&);
 // Whether the cloth falls to rest in the next frame.
 bool is_settling(const RollingState&);
 
-// The losses' inputs for the frame and a prediction. They refer to the state.
+// The losses' inputs for the frame and a prediction. They refer to the state. Waits for the teacher's frame, if one was
+// asked for.
 LossInputs inputs_of(const RollingState&, const SeenPositions&, const Points& predicted, double progress);
 
 // The options of a network's frames.

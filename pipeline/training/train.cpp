@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include <fmt/format.h>
@@ -93,6 +94,10 @@ std::string measure_text(const TrainingMeasure& m) {
       static_cast<double>(r.pairs_at_end));
 }
 
+// What the best weights are chosen by: the least distance from the solver with a teacher [mm], else the least energy of
+// the measuring roll-out [J].
+double score_of(const TrainingRun& run) { return run.trainer->teacher ? run.last.taught : run.last.roll.energy; }
+
 // Statistics of the tangled starts; empty if none are counted.
 std::string starts_text(std::vector<int> pairs) {
   if (pairs.empty()) return "";
@@ -110,14 +115,26 @@ void take_measure(TrainingRun& run) {
   run.last = measure(*run.trainer, run.watch);
   run.history.measures += measure_line(run.last, run.seconds());
   run.say(measure_text(run.last));
+  if (run.trainer->teacher)
+    run.say(fmt::format("step {}: {:.2f} mm from the solver after {} frames with what runs behind the network",
+                        run.last.step, run.last.taught, run.options.watch.taught_frames));
   if (const std::string starts = starts_text(run.trainer->start_pairs); !starts.empty()) run.say(starts);
-  const RollMeasure& roll = run.last.roll;
-  if (roll.finite && (run.history.best_step == 0 || roll.energy < run.history.best_score) && run.last.step > 0) {
-    run.history.best_score = roll.energy;
+  const double score = score_of(run);
+  const bool counts = run.trainer->teacher ? std::isfinite(score) : run.last.roll.finite;
+  if (counts && (run.history.best_step == 0 || score < run.history.best_score) && run.last.step > 0) {
+    run.history.best_score = score;
     run.history.best_step = run.last.step;
     write_weights(run, "best.h5");
   }
   write_tables(run);
+}
+
+// What the teacher does for the run, as the end of a line; empty without a teacher.
+std::string teacher_text(const TrainingRun& run) {
+  if (!run.trainer->teacher) return "";
+  const TeacherTally tally = run.trainer->teacher->tally();
+  return fmt::format(", {:.3g} targets/s by the solver, waited for it in {:.0f} % of the time", tally.rate(),
+                     100 * tally.waited / std::max(seconds_since(run.started), 1e-9));
 }
 
 void tell(TrainingRun& run, bool now = false) {
@@ -129,7 +146,8 @@ void tell(TrainingRun& run, bool now = false) {
   run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g} J, {} bad samples, {} lost roll-outs",
                       counts.step, run.options.steps, rate * run.options.optimiser.batch,
                       rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
-                      counts.bad, counts.lost));
+                      counts.bad, counts.lost) +
+          teacher_text(run));
 }
 
 // Whether something that is done `times` times in the run is due after this step.
@@ -208,7 +226,13 @@ TrainSummary train(const TrainRequest& request) {
   tell(run, true);
   save(run);
   remove_file(pause_file(run.folder));
-  return {run.folder, finished, run.trainer->counts, run.history.seconds, run.history.best_step, run.history.best_score,
+  return {run.folder,
+          finished,
+          run.trainer->counts,
+          run.history.seconds,
+          run.history.best_step,
+          run.history.best_score,
+          run.trainer->teacher ? "mm" : "J",
           run.last};
 }
 
@@ -229,11 +253,12 @@ bool pause_training(const std::filesystem::path& folder, double seconds) {
 }
 
 std::string train_text(const TrainSummary& s) {
-  return fmt::format(
-      "{:<20}{}\n{:<20}{} steps, {} frames, {} bad samples, {} lost roll-outs\n{:<20}{}\n{:<20}{}\n",
-      s.finished ? "trained" : "stopped", s.folder.string(), "work", s.counts.step, s.counts.frames, s.counts.bad,
-      s.counts.lost, "time", duration_text(s.seconds), "best roll-out",
-      s.best_step > 0 ? fmt::format("{:.4g} J at step {} (best.h5)", s.best_score, s.best_step) : "none");
+  return fmt::format("{:<20}{}\n{:<20}{} steps, {} frames, {} bad samples, {} lost roll-outs\n{:<20}{}\n{:<20}{}\n",
+                     s.finished ? "trained" : "stopped", s.folder.string(), "work", s.counts.step, s.counts.frames,
+                     s.counts.bad, s.counts.lost, "time", duration_text(s.seconds), "best roll-out",
+                     s.best_step > 0
+                         ? fmt::format("{:.4g} {} at step {} (best.h5)", s.best_score, s.score_unit, s.best_step)
+                         : "none");
 }
 
 std::string train_json(const TrainSummary& s) {
@@ -247,6 +272,7 @@ std::string train_json(const TrainSummary& s) {
                                        {"seconds", s.seconds},
                                        {"best_step", s.best_step},
                                        {"best_score", s.best_score},
+                                       {"score_unit", s.score_unit},
                                        {"worn_closed", s.last.skinned.closed},
                                        {"minimised_closed", s.last.minimised.closed},
                                        {"strain", r.strain},

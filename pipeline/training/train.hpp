@@ -26,12 +26,13 @@ struct TrainSummary {
   double seconds = 0;  // time of training over all parts of the run
   long best_step = 0;
   double best_score = 0;
+  std::string score_unit = "J";  // J: of the roll-out's energy; mm: of its distance from the solver
   TrainingMeasure last;
 };
 
 // Trains a network into a folder: checkpoint.h5, weights.h5 (the last), best.h5 (with the least energy of the measuring
-// roll-out), steps.csv, measures.csv, training.html and config.yaml. `stop` or pause_training stops it at a checkpoint.
-// Throws Error.
+// roll-out, or with a teacher those nearest to the solver), steps.csv, measures.csv, training.html and config.yaml.
+// `stop` or pause_training stops it at a checkpoint. Throws Error.
 TrainSummary train(const TrainRequest&);
 
 // The summary for people and as one JSON object.

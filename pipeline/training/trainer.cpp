@@ -170,6 +170,8 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   trainer->inputs.scene = world_hash(trainer->maker->world);
   trainer->trained_on = trained_on(options.samples);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
+  if (const TeacherWork work = teacher_work(options.objective); work.any())
+    trainer->teacher = std::make_unique<Teacher>(options.teacher, work);
   return trainer;
 }
 
@@ -191,9 +193,16 @@ void place_network(Trainer& trainer) {
     lay_out(trainer.network);
 }
 
+void teach(Trainer& trainer, RollingState& state) {
+  if (!trainer.teacher) return;
+  trainer.teacher->ask(state);
+  trainer.teacher->wait(state);
+}
+
 void set_guard(const TrainingOptions& options, RollingState& state) {
   const bool wanted = options.pool.safeguarded && state.roll.request.cloth_contact;
   state.guard = wanted ? std::make_unique<Safeguard>(state.roll.scene->scene) : nullptr;
+  state.behind = make_behind(state.roll.scene->scene, options.pool.behind);
 }
 
 double progress_of(const Trainer& trainer) { return static_cast<double>(trainer.counts.step) / trainer.options.steps; }

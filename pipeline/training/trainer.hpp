@@ -10,6 +10,7 @@
 #include "pipeline/formats/checkpoint.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
+#include "pipeline/training/teacher.hpp"
 #include "pipeline/training/trained_on.hpp"
 
 namespace selvedge {
@@ -54,6 +55,7 @@ struct Trainer {
   std::vector<RollingState> pool;
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
+  std::unique_ptr<Teacher> teacher;  // null: no term of the objective needs one
   RunInputs inputs;              // files of people, and a hash of the training world
   TrainedOn trained_on;          // includes the runs whose weights it began with
   std::vector<int> start_pairs;  // of the roll-outs begun by this process, where they are counted
@@ -81,7 +83,10 @@ double progress_of(const Trainer&);  // fraction of the run, 0 to 1
 // The options of frames at this point of the run.
 FrameMaking frame_making(const Trainer&);
 
-// Gives a new roll-out the guard that the options ask for.
+// Has the teacher, if there is one, make the frame that the state is about to make, and waits for it.
+void teach(Trainer&, RollingState&);
+
+// Gives a new roll-out the guard, and what runs behind the network, that the options ask for.
 void set_guard(const TrainingOptions&, RollingState&);
 
 // The number of requested roll-outs before the pool.

@@ -96,7 +96,7 @@ template <class Request, class Visit>
 void visit_request(Request& r, const Visit& visit) {
   const auto visit_all = [&visit](auto&... fields) { (visit(fields), ...); };
   visit_all(r.number, r.wear, r.body, r.clip, r.first_frame, r.frames, r.still, r.mirrored, r.with_body,
-            r.cloth_contact, r.yaw, r.sheet, r.wind, r.force[0], r.force[1], r.force[2]);
+            r.cloth_contact, r.yaw, r.sheet, r.wind, r.force[0], r.force[1], r.force[2], r.simulated, r.noise);
 }
 
 std::vector<double> numbers_of(const RollRequest& request) {
@@ -105,7 +105,7 @@ std::vector<double> numbers_of(const RollRequest& request) {
   return numbers;
 }
 
-constexpr std::size_t request_numbers = 16;
+constexpr std::size_t request_numbers = 18;
 
 RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span<const double> n) {
   if (!std::ranges::all_of(n.first(request_numbers), [](double v) { return std::isfinite(v); }))
@@ -124,7 +124,7 @@ RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span
   const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
                      world.wear[std::size_t(r.wear)].person == world.bodies[std::size_t(r.body)].person &&
                      r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 &&
-                     r.frames < 100000 && r.sheet <= HungStart::folded;
+                     r.frames < 100000 && r.simulated < 100000 && r.sheet <= HungStart::folded;
   if (!known) in.fail("names a roll-out that the configuration does not have");
   return r;
 }

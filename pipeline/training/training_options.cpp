@@ -101,6 +101,14 @@ const Options<SampleOptions>& sample_options() {
            "folded_share", &O::folded_share, Unit::none, from_0_to_1,
            "Fraction of roll-outs with a hanging sheet in place of a garment, without a body, one corner of the sheet "
            "folded through it. Roll-outs without contact between cloth and cloth are not among them."),
+       number("simulated_share", &O::simulated_share, Unit::none, from_0_to_1,
+              "Fraction of roll-outs that begin where the solver (`teacher`) has brought the cloth in the clip. "
+              "Roll-outs with a folded sheet are not among them."),
+       integer("simulated_frames", &O::simulated_frames, at_least_one,
+               "Number of frames that the solver makes before such a roll-out, from the skinned garment on."),
+       number("noise_share", &O::noise_share, Unit::none, from_0_to_1,
+              "Fraction of roll-outs with strong noise on the start positions in place of `noise`: its standard "
+              "deviation on each coordinate is between 1 and 10 mm."),
        flag("flesh", &O::soft_tissue,
             "True: soft tissue of the body gives way where the body would pass through itself."),
        choice("start", &O::start,
@@ -111,7 +119,8 @@ const Options<SampleOptions>& sample_options() {
               "How a garment starts. `skinned`: where skinning puts it. `untangle`: the same, untangled. `cut`: the "
               "same without the triangles that intersect, as in ContourCraft's released code. `tangled`: layers "
               "without a gap, on a body whose soft tissue does not give way."),
-       section(&O::forces, force_sampling_options(), "Random forces beside gravity."), people_option(),
+       section(&O::forces, force_sampling_options(), "Random forces beside gravity."),
+       people_option(),
        number("mannequin_weight", &O::mannequin_weight, Unit::none, positive,
               "How often the mannequin is drawn, beside the weights of `people`. Default: 1."),
        split_option()});
@@ -141,6 +150,13 @@ const Options<PoolOptions>& pool_options() {
                "Number of frames in a long roll-out, or fewer where the clip ends."),
        flag("safeguarded", &O::safeguarded,
             "True: states advance through Bridson's contact response. A roll-out ends where that gives up."),
+       choice("behind", &O::behind,
+              {{"nothing", BehindNetwork::nothing},
+               {"response", BehindNetwork::response},
+               {"solve", BehindNetwork::solve}},
+              "What runs behind the network where a state goes on to its next frame. `response`: the response to "
+              "contact, as in the stepper `carried`. `solve`: one rough solve from the network's frame, then the "
+              "response, as in `carried_rough`. A roll-out ends where that rejects a frame."),
        number("no_contact_share", &O::no_contact_share, Unit::none, from_0_to_1,
               "Fraction of roll-outs without edges and loss terms between cloth and cloth.")});
   return table;
@@ -173,6 +189,17 @@ const Options<SpaceOptions>& space_options() {
        integer(
            "pairs_per_vertex", &O::pairs_per_vertex, at_least_one,
            "Largest mean number of pairs of a vertex. Beyond it the pairs farthest apart are left out and counted.")});
+  return table;
+}
+
+const Options<TeacherOptions>& teacher_options() {
+  using O = TeacherOptions;
+  static const Options<O> table(
+      "teacher", "The solver, where the objective has a term that needs its frames.",
+      {choice("quality", &O::quality,
+              {{"converged", TeacherQuality::converged}, {"standard", TeacherQuality::standard}},
+              "How it makes a frame. `converged`: in one substep, solved closely. `standard`: as a scene without "
+              "solver options does.")});
   return table;
 }
 
@@ -217,6 +244,10 @@ const Options<WatchOptions>& watch_options() {
        text("clip", &O::clip, "Clip of the measuring roll-out, of the training split."),
        integer("fixed_states", &O::fixed_states, at_least_one,
                "Number of fixed states whose gap to the optimum is measured."),
+       integer("taught_rolls", &O::taught_rolls, at_least_one,
+               "Number of roll-outs, each in another clip, that are compared with the solver's where the objective has "
+               "a term that needs the solver. The weights that come nearest to it are kept as `best.h5`."),
+       integer("taught_frames", &O::taught_frames, at_least_one, "Number of frames after which they are compared."),
        integer("most_bad_samples", &O::most_bad_samples, at_least_one,
                "Number of samples in a row without a finite loss after which the run stops."),
        number("keep_at", &O::keep_at, Unit::none, from_0_to_1,
@@ -254,6 +285,23 @@ void check_names(const TrainingOptions& options, const std::string& where) {
   }
   if (!options.watch.garment.empty()) refuse("watch.garment", options.watch.garment, worn);
   refuse("watch.clip", options.watch.clip, clips);
+}
+
+// The solver knows one material for each cloth, and cloth without triangles cut out.
+void check_solver(const TrainingOptions& options, const std::string& where) {
+  const SampleOptions& samples = options.samples;
+  const PoolOptions& pool = options.pool;
+  if (pool.safeguarded && pool.behind != BehindNetwork::nothing)
+    throw Error("states cannot advance through two responses to contact", where + ": pool.behind",
+                "leave `pool.safeguarded` out, or what runs behind the network");
+  if (!teacher_work(options.objective).any() && samples.simulated_share == 0 && pool.behind == BehindNetwork::nothing)
+    return;
+  if (samples.sample_materials == MaterialSampling::vertex)
+    throw Error("the solver has one material for each cloth, and no materials by vertex",
+                where + ": samples.sample_materials", "take `garment` or `none`, or a training without the solver");
+  if (samples.start == GarmentStart::cut)
+    throw Error("the solver takes no garments without their intersecting triangles", where + ": samples.start",
+                "take `skinned` or `untangle`, or a training without the solver");
 }
 
 void read_over_base(const std::filesystem::path& file, const std::vector<std::string>& overrides, int depth,
@@ -301,6 +349,7 @@ const Options<TrainingOptions>& training_options() {
        section(&O::contact, training_contact_options(), "Pairs of cloth with cloth."),
        section(&O::space, space_options(), "World edges between cloth vertices."),
        section(&O::objective, objective_options(), "Terms of the loss."),
+       section(&O::teacher, teacher_options(), "The solver as teacher."),
        section(&O::optimiser, optimiser_options(), "Optimiser and learning rate."),
        section(&O::watch, watch_options(), "Checkpoints and measurements.")});
   return table;
@@ -326,6 +375,7 @@ TrainingOptions read_training(const std::filesystem::path& file, const std::vect
                             options.pool.states),
                 file.string() + ": optimiser.batch", "give `pool.states` at least as many");
   check_names(options, file.string());
+  check_solver(options, file.string());
   return options;
 }
 
@@ -342,12 +392,15 @@ TrainingOptions with_absolute_paths(TrainingOptions options) {
 std::string training_reference() {
   std::string page = chapters_below(training_options().section);
   page +=
-      "### Terms of the objective\n\nEach has two columns in `steps.csv`: its value [J], and `_share`, its share of "
+      "### Terms of the objective\n\nEach has two columns in `steps.csv`: its weighted value [J], and `_share`, its "
+      "share of "
       "the gradient.\n\n| term | weight | what is summed up |\n|---|---|---|\n";
   for (const LossRow& row : loss_rows())
     page += fmt::format("| `{}` | `objective.{}` | {} |\n", row.name, row.weighs, row.about);
   return page;
 }
+
+TeacherWork teacher_work(const LossOptions& options) { return {is_used(options.targets), is_used(options.potential)}; }
 
 std::vector<std::string> unfinished_ramps(const TrainingOptions& options) {
   std::vector<std::string> complaints;

@@ -11,6 +11,7 @@
 #include "learned/losses/loss_options.hpp"
 #include "learned/steppers/network_device.hpp"
 #include "pipeline/config/options.hpp"
+#include "pipeline/training/teacher_step.hpp"
 #include "pipeline/training/training_people.hpp"
 
 namespace selvedge {
@@ -51,6 +52,9 @@ struct SampleOptions {
   double noise = 3e-3;
   bool yaw = true, mirror = true;
   double no_body_share = 0, folded_share = 0;
+  double simulated_share = 0;
+  int simulated_frames = 20;
+  double noise_share = 0;
   bool soft_tissue = true;
   GarmentStart start = GarmentStart::skinned;
   ForceSampling forces;
@@ -64,6 +68,13 @@ bool has_mannequin(const SampleOptions&);
 // The procedural clips in which the mannequin is trained.
 std::vector<std::string> training_clip_names(const SampleOptions&);
 
+// What runs behind the network where a state goes on to its next frame.
+enum class BehindNetwork {
+  nothing,   // the state is what the network made
+  response,  // Bridson's response to contact, as in the stepper `carried`
+  solve      // one rough solve that begins at what the network made, then the response, as in `carried_rough`
+};
+
 // How states are rolled out. Members are described where keys are bound to them:
 // pipeline/training/training_options.cpp.
 struct PoolOptions {
@@ -76,6 +87,7 @@ struct PoolOptions {
   double long_share = 0;
   int long_frames = 150;
   bool safeguarded = false;
+  BehindNetwork behind = BehindNetwork::nothing;
   double no_contact_share = 0;
 };
 
@@ -112,6 +124,7 @@ struct WatchOptions {
   int frames = 60;
   std::string garment, clip = "walk";
   int fixed_states = 8;
+  int taught_rolls = 3, taught_frames = 10;
   int most_bad_samples = 50;
   double keep_at = 0;
 };
@@ -131,6 +144,7 @@ struct TrainingOptions {
   ContactOptions contact;
   SpaceOptions space;
   LossOptions objective = fast_losses();
+  TeacherOptions teacher;
   OptimiserOptions optimiser;
   WatchOptions watch;
 };
@@ -153,6 +167,9 @@ TrainingOptions with_absolute_paths(TrainingOptions);
 
 // Every section of a training file as Markdown: the end of docs/training.md.
 std::string training_reference();
+
+// What the terms of the objective need of the solver at some point of the run.
+TeacherWork teacher_work(const LossOptions&);
 
 // Complaints, one per line, about ramps that do not reach their full value before the run ends.
 std::vector<std::string> unfinished_ramps(const TrainingOptions&);

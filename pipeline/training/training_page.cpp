@@ -28,11 +28,14 @@ std::string training_page(const TrainingOptions& options, const std::string& ste
   page += chart("Terms of the objective without sign [J]", at, sizes(columns_of(steps, terms)), true);
   page += chart("Share of the gradient", at, columns_of(steps, shares), false);
   page += chart("Norm of the weights' gradient", at, columns_of(steps, {"gradient_norm"}), true);
+  page += chart("Targets a second that the solver makes", at, columns_of(steps, {"targets_per_second"}), false);
   page += chart("Learning rate", at, columns_of(steps, {"learning_rate"}), false);
   page += chart("Excess over the optimum on fixed states [J]", measured,
                 columns_of(measures, {"worn_excess", "minimised_excess"}), true);
   page +=
       chart("Gap closed on fixed states", measured, columns_of(measures, {"worn_closed", "minimised_closed"}), false);
+  page += chart("Roll-outs with what runs behind the network: distance from the solver at the end [mm]", measured,
+                columns_of(measures, {"taught_distance"}), true);
   page += chart("Roll-out on a training clip: strain", measured, columns_of(measures, {"strain", "strain_99"}), true);
   page += chart("Roll-out: objective [J]", measured, columns_of(measures, {"energy"}), true);
   page += chart("Roll-out: intersecting pairs", measured, columns_of(measures, {"pairs", "pairs_at_end"}), false);

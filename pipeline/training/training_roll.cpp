@@ -8,9 +8,11 @@
 #include "collision/untangle/untangle.hpp"
 #include "learned/losses/force_input.hpp"
 #include "learned/steppers/learned_scene.hpp"
+#include "learned/steppers/learned_state.hpp"
 #include "physics/recovery/cut_out.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/training/hung_sheet.hpp"
+#include "pipeline/training/solver_frame.hpp"
 
 namespace selvedge {
 namespace {
@@ -82,6 +84,16 @@ void turn(const RollRequest& request, PointsF& x) {
   x = (x * rotation).eval();
 }
 
+// Noise on the coordinates of free vertices.
+Points start_noise_of(const TrainingOptions& options, const Roll& roll) {
+  RandomStream random = stream_for(options.seed, start_noise, roll.request.number);
+  const double deviation = roll.request.noise > 0 ? roll.request.noise : options.samples.noise;
+  Points noise(roll.cloth[1].rows(), 3);
+  for (Eigen::Index i = 0; i < noise.size(); ++i) noise.data()[i] = deviation * random.normal();
+  for (const int pin : roll.scene->rest.pinned) noise.row(pin).setZero();
+  return noise;
+}
+
 // Sets the start: folded, or with noise, or untangled without noise, which would tangle it again.
 void set_start(const TrainingOptions& options, Roll& roll) {
   if (roll.request.sheet == HungStart::folded) {
@@ -91,13 +103,9 @@ void set_start(const TrainingOptions& options, Roll& roll) {
     roll.start = start.cast<double>();
     return;
   }
-  RandomStream random = stream_for(options.seed, start_noise, roll.request.number);
-  Points noise(roll.cloth[1].rows(), 3);
-  for (Eigen::Index i = 0; i < noise.size(); ++i) noise.data()[i] = options.samples.noise * random.normal();
-  for (const int pin : roll.scene->rest.pinned) noise.row(pin).setZero();
   roll.start = roll.cloth[1].cast<double>();
   if (options.samples.start != GarmentStart::untangle || !roll.request.cloth_contact) {
-    roll.start += noise;
+    roll.start += start_noise_of(options, roll);
     return;
   }
   // Tangles that come apart do so soon; the others would take most of the time.
@@ -175,6 +183,24 @@ void set_forces(const RollMaker& maker, Roll& roll) {
     roll.forces.wind = std::sqrt(2 * strength * density / (wind.air_density * wind.drag)) / strength * request.force;
 }
 
+// Sets the start where the solver brings the skinned garment over the frames before, with noise if it is asked for.
+void simulate_start(RollMaker& maker, const RollRequest& at, Roll& roll) {
+  const RollRequest& request = roll.request;
+  const Scene& scene = roll.scene->scene;
+  std::vector<SkinnedFrame> frames;  // the first one gives the velocity at the start
+  for (int k = -request.simulated; k <= 1; ++k) frames.push_back(frame_of(maker, request, at, k));
+  State state;
+  state.x = frames[1].cloth.cast<double>();
+  state.v = (state.x - frames[0].cloth.cast<double>()) / learned_dt;
+  if (!scene.obstacles.empty()) state.obstacles = {frames[1].body.cast<double>()};
+  const auto solver = make_teacher_stepper(scene, maker.options.teacher);
+  roll.usable = simulate_frames(*solver, scene, roll.forces, std::span(frames).subspan(2), state);
+  if (!roll.usable) return;
+  roll.start = state.x;
+  roll.velocity = state.v * learned_dt;
+  if (request.noise > 0) roll.start += start_noise_of(maker.options, roll);
+}
+
 void hang(HungStart sheet, RollRequest& request) {
   request.sheet = sheet;
   request.with_body = false;
@@ -212,6 +238,7 @@ void draw_performance(const TrainingWorld& world, const TrainingPerson& who, Ran
 }
 
 constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
+constexpr double least_noise = 1e-3, most_noise = 1e-2;  // of a start with strong noise [m]
 constexpr int most_attempts = 8;  // to find such a start
 
 }  // namespace
@@ -267,6 +294,12 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
   if (samples.folded_share > 0 && request.cloth_contact && random.heads(samples.folded_share)) {
     hang(HungStart::folded, request);
     request.still = false;  // cloth does not meet cloth in a settling frame
+  }
+  if (samples.noise_share > 0 && random.heads(samples.noise_share))
+    request.noise = random.between(least_noise, most_noise);
+  if (samples.simulated_share > 0 && random.heads(samples.simulated_share) && request.sheet != HungStart::folded) {
+    request.simulated = samples.simulated_frames;
+    request.still = false;
   }
   return request;
 }
@@ -379,7 +412,10 @@ Roll make_roll(RollMaker& maker, const RollRequest& request) {
     roll.cloth.push_back(std::move(frame.cloth));
   }
   set_forces(maker, roll);
-  set_start(maker.options, roll);
+  if (request.simulated > 0)
+    simulate_start(maker, at, roll);
+  else
+    set_start(maker.options, roll);
   if (maker.options.samples.start == GarmentStart::cut && request.cloth_contact) cut_start(maker, roll);
   return roll;
 }

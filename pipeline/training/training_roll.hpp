@@ -28,6 +28,8 @@ struct RollRequest {
   HungStart sheet = HungStart::none;
   bool wind = false;          // the force is that of a wind
   Vec3 force = Vec3::Zero();  // beside gravity [m/s2]; for wind: on a triangle that faces it
+  int simulated = 0;          // frames that the solver makes before the roll-out begins
+  double noise = 0;           // deviation of the noise on start positions; 0: as SampleOptions have it [m]
   bool operator==(const RollRequest&) const = default;
 };
 
@@ -52,8 +54,9 @@ struct Roll {
   RollRequest request;
   std::shared_ptr<const TrainingScene> scene;
   std::vector<PointsF> body, cloth;  // cloth: skinned; body: empty matrices if there is none
-  Points start;                      // start of free vertices: skinned, perhaps untangled, perhaps with noise
-  bool usable = true;                // false: the start is not untangled, or wholly cut out
+  Points start;                      // of free vertices: skinned or simulated, perhaps untangled, perhaps with noise
+  Points velocity;                   // of a simulated start [m/frame]; no rows: that of the skinned garment
+  bool usable = true;                // false: the start is not untangled, wholly cut out, or was not simulated
   int parting = 0;                   // iterations that untangled the start
   int cut = 0;                       // triangles cut out at the start
   std::vector<std::vector<char>> body_left_out;  // by entry: faces of the body that meet others; empty: soft tissue

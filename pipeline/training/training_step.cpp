@@ -52,8 +52,19 @@ void draw_samples(Trainer& trainer) {
     sample.state = *drawn;
     left.erase(drawn);
     begin_anew(trainer, *sample.state);
+    if (trainer.teacher) trainer.teacher->ask(*sample.state);
     sample.record = {};
     sample.record.pass = sample.state->pass;
+  }
+  if (!trainer.teacher) return;
+  for (Sample& sample : trainer.samples) sample.record.bad = trainer.teacher->wait(*sample.state).refused;
+}
+
+// Asks the teacher for the frames that the samples' states make next, so that they are there when they are drawn.
+void ask_ahead(Trainer& trainer) {
+  for (Sample& sample : trainer.samples) {
+    begin_anew(trainer, *sample.state);
+    trainer.teacher->ask(*sample.state);
   }
 }
 
@@ -61,6 +72,7 @@ void draw_samples(Trainer& trainer) {
 void make_graphs(Trainer& trainer, const FrameMaking& making) {
   FeatureTables& tables = trainer.network.weights.tables;
   for_samples(trainer.samples, [&](Sample& sample) {
+    if (!sample.record.bad.empty()) return;
     if (!raw_graph_of(making, tables, *sample.state, sample.graph)) sample.record.bad = sample.state->found.refused;
   });
   if (!trainer.options.optimiser.freeze_statistics && trainer.options.weights.empty()) {
@@ -215,7 +227,7 @@ void advance(Trainer& trainer, const FrameMaking& making) {
     RollingState& state = *sample.state;
     const bool last_pass = state.pass + 1 == making.passes;
     if (last_pass && pool.gate > 0) sample.next = gated(making, pool.gate, sample.next, state);
-    if (last_pass && !pass_guard(making, state, sample.next))
+    if (last_pass && !(pass_guard(making, state, sample.next) && pass_behind(state, sample.next)))
       given_up[static_cast<std::size_t>(&sample - trainer.samples.data())] = 1;
     else
       take_pass(making, sample.next, pool.reset_distance, state);
@@ -236,6 +248,7 @@ void advance(Trainer& trainer, const FrameMaking& making) {
     if (sample.record.pass + 1 == making.passes) ++trainer.counts.frames;
     if (state.over && state.frame < state.roll.request.frames) ++trainer.counts.lost;
   }
+  if (trainer.teacher) ask_ahead(trainer);
 }
 
 }  // namespace

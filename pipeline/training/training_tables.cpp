@@ -31,7 +31,9 @@ void StepWindow::add(const StepRecord& record) {
 }
 
 std::string steps_header() {
-  std::string line = "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale";
+  std::string line =
+      "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale,"
+      "targets_per_second";
   for (const LossRow& row : loss_rows()) line += fmt::format(",{0},{0}_share", row.name);
   return line + "\n";
 }
@@ -51,9 +53,9 @@ std::string with_columns_of_now(const std::string& steps_csv) {
 
 std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
   const double n = std::max(count_, 1);
-  std::string line =
-      fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g}", trainer.counts.step, progress_of(trainer),
-                  seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n, norm_ / n, scale_ / n);
+  std::string line = fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g},{:.4g}", trainer.counts.step,
+                                 progress_of(trainer), seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n,
+                                 norm_ / n, scale_ / n, trainer.teacher ? trainer.teacher->tally().rate() : 0);
   terms_.resize(loss_rows().size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
   const double mean = mean_sum();
@@ -65,7 +67,7 @@ std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
 std::string measures_header() {
   return "step,seconds,worn_closed,worn_excess,worn_log_excess,worn_rms,minimised_closed,minimised_excess,"
          "minimised_log_excess,minimised_rms,finite,frames,energy,strain,strain_99,strain_most,deep,deepest,kinetic,"
-         "jitter,pairs,pairs_at_end,volume\n";
+         "jitter,pairs,pairs_at_end,volume,taught_distance\n";
 }
 
 std::string measure_line(const TrainingMeasure& m, double seconds) {
@@ -74,9 +76,9 @@ std::string measure_line(const TrainingMeasure& m, double seconds) {
   };
   const RollMeasure& r = m.roll;
   return fmt::format(
-      "{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{},{:.4g}\n", m.step,
-      seconds, gap(m.skinned), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99, r.strain_most,
-      r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end, 1e6 * r.volume);
+      "{},{:.1f},{},{},{:d},{},{:.6g},{:.5f},{:.5f},{:.4f},{:.5f},{:.5f},{:.6g},{:.6g},{:.2f},{},{:.4g},{:.4g}\n",
+      m.step, seconds, gap(m.skinned), gap(m.minimised), r.finite, r.frames, r.energy, r.strain, r.strain_99,
+      r.strain_most, r.deep, r.deepest, r.kinetic, r.jitter, r.pairs, r.pairs_at_end, 1e6 * r.volume, m.taught);
 }
 
 }  // namespace selvedge

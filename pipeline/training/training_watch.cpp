@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/nearest_faces.hpp"
+#include "learned/losses/cloth_losses.hpp"
 #include "learned/losses/volume_loss.hpp"
 #include "pipeline/measures/motion_measures.hpp"
 
@@ -64,10 +66,11 @@ RollRequest watched(const WatchOptions& options, const TrainingWorld& world) {
 }
 
 // Every frame of a network of several passes counts as one.
-FixedState fixed_state(const FrameMaking& making, Roll roll, bool skinned) {
+FixedState fixed_state(Trainer& trainer, const FrameMaking& making, Roll roll, bool skinned) {
   FixedState fixed;
   fixed.skinned = skinned;
   begin_roll(std::move(roll), fixed.state);
+  teach(trainer, fixed.state);
   FrameMaking whole = making;
   whole.passes = 1;
   for (int k = 0; !skinned && k < frames_before && !fixed.state.over; ++k) {
@@ -77,6 +80,7 @@ FixedState fixed_state(const FrameMaking& making, Roll roll, bool skinned) {
     NextCloth next{made.x, made.x - seen.x};
     if (is_settling(fixed.state)) next.velocity.setZero();
     take_pass(whole, next, HUGE_VAL, fixed.state);
+    teach(trainer, fixed.state);
   }
   const Points inertial = inertial_of(whole, fixed.state);
   fixed.inertial = sum_at(whole, fixed.state, inertial);
@@ -127,7 +131,53 @@ void add_depth(const Surface& body, const Points& body_x, const Points& x, Neare
   roll.deep += static_cast<double>(count) / static_cast<double>(x.rows());
 }
 
+// The start of each is where the solver brings the skinned garment.
+std::vector<Roll> rolls_to_teach(const TrainingOptions& options, RollMaker& maker, const RollRequest& who, int clips) {
+  std::vector<Roll> rolls;
+  for (int k = 0; k < options.watch.taught_rolls; ++k) {
+    const int at = (who.clip + k) % clips;
+    const int first = frame_count(maker.world, who.body, at) / 3 + 10 * (k / clips);
+    RollRequest request = watched_request(options, maker.world, who, at, first, options.watch.taught_frames, false);
+    request.simulated = options.samples.simulated_frames;
+    rolls.push_back(make_roll(maker, request));
+  }
+  return rolls;
+}
+
+// Lets the solver go on from the start of the roll-out. Throws Error where it cannot.
+TaughtRoll taught_roll(const TrainingOptions& options, Roll roll) {
+  TaughtRoll taught{std::move(roll), {}};
+  RollingState state;
+  begin_roll(taught.roll, state);
+  std::vector<SkinnedFrame> ends;
+  for (std::size_t k = 2; k < taught.roll.body.size(); ++k) ends.push_back({taught.roll.body[k], taught.roll.cloth[k]});
+  const Scene& scene = taught.roll.scene->scene;
+  const auto solver = make_teacher_stepper(scene, options.teacher);
+  State at = solver_frame(state).from;
+  if (!taught.roll.usable || !simulate_frames(*solver, scene, taught.roll.forces, ends, at))
+    throw Error("the solver cannot make the roll-out that networks are compared with", "training " + options.name,
+                "give another `watch.clip` or `watch.garment`");
+  taught.end = std::move(at.x);
+  return taught;
+}
+
 }  // namespace
+
+double taught_distance(Trainer& trainer, const TaughtRoll& taught) {
+  const FrameMaking making = full_making(trainer);
+  const BehindNetwork behind = trainer.options.pool.behind;
+  RollingState state;
+  begin_roll(taught.roll, state);
+  state.behind =
+      make_behind(taught.roll.scene->scene, behind == BehindNetwork::nothing ? BehindNetwork::response : behind);
+  while (!state.over) {
+    NextCloth next;
+    if (!predict(trainer, making, state, next)) return HUGE_VAL;
+    if (state.pass + 1 == making.passes && !pass_behind(state, next)) return HUGE_VAL;
+    take_pass(making, next, HUGE_VAL, state);
+  }
+  return target_loss(taught.roll.scene->losses, taught.end, state.now.x, nullptr);
+}
 
 bool predict(Trainer& trainer, const FrameMaking& making, RollingState& state, NextCloth& next) {
   const FeatureTables& tables = trainer.network.weights.tables;
@@ -157,6 +207,7 @@ RollMeasure measure_roll(Trainer& trainer, const Roll& roll) {
     }
     const bool last_pass = state.pass + 1 == making.passes, settling = is_settling(state);
     if (last_pass && !settling) {
+      teach(trainer, state);
       result.energy += sum_at(making, state, next.x);
       const StrainMeasure strain = strain_of(scene, next.x);
       result.strain += strain.mean;
@@ -189,7 +240,7 @@ TrainingWatch make_training_watch(const TrainingOptions& options, Trainer& train
   TrainingWatch watch;
   RollMaker& maker = *trainer.maker;
   const FrameMaking making = full_making(trainer);
-  std::vector<Roll> rolls;
+  std::vector<Roll> rolls, to_teach;
   trainer.queue->locked([&] {
     const TrainingWorld& world = maker.world;
     const RollRequest who = watched(options.watch, world);
@@ -202,10 +253,12 @@ TrainingWatch make_training_watch(const TrainingOptions& options, Trainer& train
       const int first = frame_count(world, who.body, at) / 3 + 10 * (k / 2 / clips);
       rolls.push_back(make_roll(maker, watched_request(options, world, who, at, first, frames, !skinned)));
     }
+    if (trainer.teacher) to_teach = rolls_to_teach(options, maker, who, clips);
     maker.options.samples.noise = noise;
   });
+  for (Roll& roll : to_teach) watch.taught.push_back(taught_roll(options, std::move(roll)));
   for (std::size_t k = 0; k < rolls.size(); ++k)
-    watch.states.push_back(fixed_state(making, std::move(rolls[k]), k % 2 == 0));
+    watch.states.push_back(fixed_state(trainer, making, std::move(rolls[k]), k % 2 == 0));
   return watch;
 }
 
@@ -216,6 +269,8 @@ TrainingMeasure measure(Trainer& trainer, TrainingWatch& watch) {
   result.skinned = gap_of(trainer, making, watch.states, true);
   result.minimised = gap_of(trainer, making, watch.states, false);
   result.roll = measure_roll(trainer, watch.roll);
+  for (const TaughtRoll& taught : watch.taught)
+    result.taught += taught_distance(trainer, taught) / static_cast<double>(watch.taught.size());
   return result;
 }
 

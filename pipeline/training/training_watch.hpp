@@ -13,10 +13,17 @@ struct FixedState {
   bool skinned = true;  // the skinned garment; false: a state after minimised frames
 };
 
-// The states and the roll-out for measurements. All are of the training split.
+// A roll-out from a simulated start, and where the solver's own roll-out ends.
+struct TaughtRoll {
+  Roll roll;
+  Points end;  // [m]
+};
+
+// The states and roll-outs for measurements. All are of the training split.
 struct TrainingWatch {
   std::vector<FixedState> states;
   Roll roll;
+  std::vector<TaughtRoll> taught;  // none without a teacher
 };
 
 // Prepares the measurements in some seconds. The options determine the result.
@@ -49,6 +56,8 @@ struct TrainingMeasure {
   long step = 0;
   GapMeasure skinned, minimised;
   RollMeasure roll;
+  double taught =
+      0;  // mean distance from the solver at the ends of taught roll-outs, over the masses [mm]; inf: not made
 };
 
 // Measures the current weights on both kinds of fixed states and the roll-out. The training does not change.
@@ -57,7 +66,11 @@ TrainingMeasure measure(Trainer&, TrainingWatch&);
 // Runs the network once for the state's pass. Returns false if the graph is refused.
 bool predict(Trainer&, const FrameMaking&, RollingState&, NextCloth&);
 
-// Rolls out with the trainer's weights and measures each frame.
+// Rolls out with the trainer's weights alone and measures each frame.
 RollMeasure measure_roll(Trainer&, const Roll&);
+
+// The distance from the solver after a roll-out with what runs behind the network, which is the response to contact at
+// least [mm]; inf where a frame cannot be made.
+double taught_distance(Trainer&, const TaughtRoll&);
 
 }  // namespace selvedge

@@ -264,6 +264,32 @@ TEST_CASE("losses: gradients are those of the values", "[losses]") {
     }
 }
 
+TEST_CASE("losses: the distance from a target is in mm and counts masses of free vertices alone", "[losses]") {
+  VertexMaterial material;
+  material.density = 6;
+  LossGarment garment = triangle_garment(material, true);
+  const Points target = Points::Random(4, 3);
+  Points x = target;
+  x.row(0) += Eigen::RowVector3d(0, 3e-3, 0);
+  x.row(2) += Eigen::RowVector3d(4e-3, 0, 0);
+  const double m0 = garment.mass[0], m2 = garment.mass[2];
+  const double all = garment.mass[0] + garment.mass[1] + garment.mass[2] + garment.mass[3];
+  CHECK(target_loss(garment, target, x, nullptr) == Approx(std::sqrt((9 * m0 + 16 * m2) / all)));
+  garment.pinned[2] = 1;
+  CHECK(target_loss(garment, target, x, nullptr) == Approx(3 * std::sqrt(m0 / (all - m2))));
+
+  Points gradient = Points::Zero(4, 3);
+  x += 1e-3 * Points::Random(4, 3);
+  target_loss(garment, target, x, &gradient);
+  const Points numeric =
+      differences(x, [&](const Points& moved) { return target_loss(garment, target, moved, nullptr); });
+  CHECK(apart(gradient, numeric) < 1e-6);
+  CHECK(gradient.row(2).isZero(0));
+  Points none = Points::Zero(4, 3);
+  CHECK(target_loss(garment, target, target, &none) == 0);
+  CHECK(none.isZero(0));
+}
+
 TEST_CASE("losses: contours have the share of the gradient that is asked for, whatever their weight", "[losses]") {
   const LossScene scene;
   LossInputs in = scene.inputs();

@@ -168,6 +168,19 @@ TEST_CASE("known steppers: dropping all caches every third step changes nothing"
   }
 }
 
+TEST_CASE("known steppers: `carried_rough` makes the frames of the quality `draft`, whatever the scene's quality is",
+          "[known_steppers]") {
+  const Folder folder("carried_rough");
+  const auto end = [&](const std::string& kind, const std::string& quality) {
+    const Setup setup = scene_for(kind, folder, {"run.quality=" + quality});
+    return after(*make_stepper(setup), setup, setup.initial, 6);
+  };
+  const State rough = end("carried_rough", "fine");
+  CHECK(same(rough, end("conventional", "draft")));
+  CHECK_FALSE(same(rough, end("conventional", "preview")));
+  CHECK(find_rows(rough.memory, "carried.target", rough.x.rows()));
+}
+
 TEST_CASE("known steppers: what the traits do not accept is refused", "[known_steppers]") {
   for (const std::string& kind : known_kinds().names()) {
     INFO(kind);
