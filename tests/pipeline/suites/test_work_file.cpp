@@ -195,16 +195,16 @@ TEST_CASE("cells: the wardrobe's cells are its rows, clip by clip", "[cells][war
 
 TEST_CASE("cells: a row of the wardrobe alone is the row of the command", "[cells][wardrobe]") {
   const Folder folder("work_wardrobe");
-  const CellList list =
-      read_cells(fake::write(folder, "w.yaml", "{cells: wardrobe, wear: [skirt, shorts], clips: walk, frames: 1}\n"));
-  CHECK(list.names == std::vector<std::string>{"shorts.walk", "skirt.walk"});
+  const CellList list = read_cells(
+      fake::write(folder, "w.yaml", "{cells: wardrobe, wear: [skirt_short, shorts], clips: walk, frames: 1}\n"));
+  CHECK(list.names == std::vector<std::string>{"shorts.walk", "skirt_short.walk"});
   REQUIRE(do_cell(list, 1, folder.path / "out", {}));
   const GatheredCells alone = gather_cells(list, folder.path / "out");
   CHECK(alone.missing == std::vector<std::string>{"shorts.walk"});
-  CHECK(fs::exists(folder.path / "out" / "skirt" / "walk" / "view.html"));
+  CHECK(fs::exists(folder.path / "out" / "skirt_short" / "walk" / "view.html"));
   WardrobeRequest request;
   request.configs = config_folder();
-  request.wear = {"skirt", "shorts"};
+  request.wear = {"skirt_short", "shorts"};
   request.clips = {"walk"};
   request.most_frames = 1;
   request.out = folder.path / "command";
