@@ -48,9 +48,12 @@ stress: program  ## Run every stress scene ten times: a table, and out/stress/*;
 stability: program  ## Stiff and extreme cases, pass or fail each: a table, and out/stability/*
 	@$(PROGRAM) stability --out out/stability
 
+# A process does some cells of a clip in turn, which share its body.
+WARDROBE := configs/work/wardrobe.yaml
 wardrobe: program  ## Every garment by code through every clip: a table, and out/wardrobe/*; goes on where it was stopped
-	@for k in $$(seq $(JOBS)); do OMP_NUM_THREADS=1 $(PROGRAM) wardrobe --share $$k $(JOBS) --out out/wardrobe & done; wait
-	@$(PROGRAM) wardrobe --out out/wardrobe
+	@$(PROGRAM) cells $(WARDROBE) --names | OMP_NUM_THREADS=1 xargs -P $(JOBS) -n 8 \
+	  sh -c '$(PROGRAM) cell $(WARDROBE) "$$@" --out out/wardrobe || [ $$? -eq 1 ]' cell  # 1: a row failed
+	@$(PROGRAM) gather $(WARDROBE) --out out/wardrobe
 
 compare: program  ## Compare the conventional stepper's settings: tables and plots of error against run time, and out/compare/*
 	@cmake/install-packages.sh plots

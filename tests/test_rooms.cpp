@@ -64,6 +64,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"run"},
       {"measures"},
       {"view", {"host", "reports", "formats"}},
+      {"cells"},
       {"tools"},
       {"training"},
       {"drapes"},

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "collision/geometry/stop_scope.hpp"
+#include "pipeline/cells/scene_cells.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/folder_lock.hpp"
@@ -77,15 +78,6 @@ std::string trajectory_line(const std::filesystem::path& out) {
   return fmt::format("{:<20}{}\n", "trajectory", (out / "run.h5").string());
 }
 
-// A cache that cannot be written costs the next run time, and this one nothing.
-void keep_for_later(const Setup& setup) {
-  try {
-    write_tissue(setup.bodies);
-  } catch (const Error& error) {
-    std::cerr << "warning: soft tissue is not kept: " << error.what() << "\n";
-  }
-}
-
 int simulate(const SimulateArguments& arguments, bool json) {
   const Setup setup = read_scene(arguments.scene);
   if (arguments.cache) read_tissue(cache_folder(), setup.bodies);
@@ -120,7 +112,7 @@ int simulate(const SimulateArguments& arguments, bool json) {
     people(json) << "stopped before the first frame\n";
     return 1;
   }
-  keep_for_later(setup);
+  keep_tissue(setup, &std::cerr);
   people(json) << summary_text(summary) << trajectory_line(request.out);
   if (arguments.view) people(json) << fmt::format("{:<20}{}\n", "page to look at", page_text(request.out, summary));
   const std::string advice =

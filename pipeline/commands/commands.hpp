@@ -27,7 +27,8 @@ AddCommand check_command, untangle_command, push_command, dress_command, pattern
     fit_command, export_command, view_command;
 // suite_commands.cpp
 AddCommand bench_command, stress_command, compare_command, validate_command, stability_command, wardrobe_command;
-AddCommand dataset_command, train_command;  // training_commands.cpp
+AddCommand cells_command, cell_command, gather_command;  // cell_commands.cpp
+AddCommand dataset_command, train_command;               // training_commands.cpp
 AddCommand weights_import_command, weights_info_command, weights_halve_command, weights_parity_command;
 
 struct Command {
@@ -58,6 +59,9 @@ inline constexpr Command commands[]{
     {"Measure", "validate", "physics with known answers", validate_command},
     {"Measure", "stability", "stiff and extreme cases, pass or fail each", stability_command},
     {"Measure", "wardrobe", "every garment by code through every procedural clip", wardrobe_command},
+    {"Use", "cells", "a long work as the cells that any machine may do", cells_command},
+    {"Use", "cell", "one cell of a work", cell_command},
+    {"Use", "gather", "the tables of a work's cells that are there", gather_command},
     {"Prepare", "dataset", "drapes at rest to train a network on", dataset_command},
     {"Prepare", "train", "a network of the stepper `learned`, or one of drapes", train_command},
     {"Prepare", "weights", "weight files of learned steppers", nullptr},

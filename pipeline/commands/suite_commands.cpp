@@ -64,7 +64,6 @@ RunCommand wardrobe_command(CLI::App& command) {
   command.add_option("wear", request->wear, "names of garments and outfits by code (all)");
   command.add_option("--clips", request->clips, "names of procedural clips (all)")->delimiter(',');
   command.add_option("--frames", request->most_frames, "of a clip at most")->check(CLI::PositiveNumber);
-  command.add_option("--share", request->share, "K N: every Nth clip from the Kth on, for several processes at once");
   command.add_option("--configs", request->configs, "folder of the configurations");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {

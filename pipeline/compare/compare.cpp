@@ -4,214 +4,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/compare/compare_parts.hpp"
-#include "pipeline/compare/compare_run.hpp"
+#include "pipeline/cells/do_cells.hpp"
+#include "pipeline/cells/scene_cells.hpp"
+#include "pipeline/compare/compare_scene.hpp"
 #include "pipeline/compare/compared_drapes.hpp"
-#include "pipeline/compare/comparison.hpp"
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/compare/sequences.hpp"
 #include "pipeline/compare/training_sequences.hpp"
 #include "pipeline/compare/volume_report.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
-#include "pipeline/run/prepare.hpp"
-#include "pipeline/run/progress.hpp"
 #include "pipeline/run/summary.hpp"
-#include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {
 namespace {
 
-// All that a part's result depends on.
-struct Keys {
-  std::string program, reference;
-  std::vector<std::string> settings;
+void say(std::ostream* log, const std::string& line) {
+  if (log) *log << line << "\n" << std::flush;
+}
+
+struct CompareWork {
+  CompareRequest request;
+  Comparison comparison;
+  std::string program;
+  std::vector<std::string> names;                // of the cells
+  std::vector<std::optional<SceneWork>> scenes;  // read when they are needed
 };
-
-struct SceneWork {
-  const CompareScene* scene = nullptr;
-  bool keeps = false;  // the trajectories of its rows
-  std::filesystem::path folder;
-  Keys keys;
-  std::vector<std::optional<Setup>> setups;  // absent: this build cannot, and `trouble` says why
-  std::vector<std::string> trouble;
-  Start start;  // of all of them
-  CompareFloor floor;
-  std::vector<CompareErrors> errors;
-  std::vector<std::vector<CompareRun>> runs;  // of each setting
-};
-
-// Why a setting is left out before it is read; empty: it is not.
-std::string missing_part(const CompareSetting& setting, const Kinds& kinds) {
-  if (!setting.stepper.empty() && !kinds.find(setting.stepper))
-    return "left out: this program has no stepper `" + setting.stepper + "`";
-  if (setting.weights.empty() || std::filesystem::exists(setting.weights)) return {};
-  return "left out: there is no weight file " + setting.weights.string();
-}
-
-// An error's cure stands on a line of its own.
-std::string on_one_line(const std::string& error) {
-  const std::size_t end = error.find("\n  cure: ");
-  return end == std::string::npos ? error : error.substr(0, end) + "; " + error.substr(end + 3);
-}
-
-// `whose`: the reference's or a setting's overrides, which an error names with the comparison file.
-Setup read_as(const Comparison& comparison, const std::string& whose, const CompareScene& scene, bool short_form,
-              const std::vector<std::string>& overrides) {
-  return read_for(comparison.file.string() + ": " + whose + " on scene `" + scene.name + "`",
-                  [&] { return read_compared(scene, short_form, overrides, comparison.kinds); });
-}
-
-// Reads every setup and makes every stepper once, so that what is wrong is said before hours of work.
-SceneWork open_scene(const CompareRequest& request, const Comparison& comparison, const CompareScene& scene,
-                     const std::string& program) {
-  SceneWork work;
-  work.scene = &scene;
-  work.folder = request.out / "parts" / scene.name;
-  make_folder(work.folder);
-  const Setup reference = read_as(comparison, "the reference", scene, request.short_form, comparison.reference);
-  work.keys.program = program;
-  work.keys.reference = fmt::format("{} {:016x} {} {} {} {}", program, hash_of(reference.config), scene.states,
-                                    scene.horizon, comparison.jitter, joined(comparison.algebraic));
-  for (const CompareSetting& setting : comparison.settings) {
-    std::string trouble = missing_part(setting, comparison.kinds);
-    if (!trouble.empty()) {
-      work.trouble.push_back(trouble);
-      work.setups.emplace_back();
-      work.keys.settings.emplace_back();
-      continue;
-    }
-    Setup setup = read_as(comparison, "setting `" + setting.name + "`", scene, request.short_form, setting.overrides);
-    work.keys.settings.push_back(fmt::format(
-        "{} {:016x} {:016x} {} {} {} {}", program, hash_of(setup.config), hash_of(whole_file(setting.weights)),
-        Eigen::nbThreads(), comparison.judged_frames, comparison.limits.pairs, comparison.limits.seconds));
-    try {
-      make_stepper(setup);
-    } catch (const Error& error) {
-      trouble = on_one_line(error.what());
-    }
-    work.trouble.push_back(trouble);
-    work.setups.push_back(trouble.empty() ? std::optional<Setup>(std::move(setup)) : std::nullopt);
-  }
-  work.runs.resize(comparison.settings.size());
-  return work;
-}
-
-void say(const CompareRequest& request, const std::string& line) {
-  if (request.log) *request.log << line << "\n" << std::flush;
-}
-
-// Size and length of a scene without references. Always true: nothing stops it.
-bool describe_scene(SceneWork& work) {
-  work.floor.scene = work.scene->name;
-  for (const std::optional<Setup>& setup : work.setups)
-    if (setup) {
-      work.floor.vertices = setup->scene.surface.vertex_count;
-      work.floor.frames = setup->run.frames;
-    }
-  return true;
-}
-
-// The floor and every setting's errors. The reference is made only if one of them is not there. False: stopped.
-bool find_errors(const CompareRequest& request, const Comparison& comparison, SceneWork& work) {
-  work.errors.assign(work.setups.size(), {});
-  if (work.scene->states == 0) return describe_scene(work);
-  std::optional<CompareReference> reference;
-  const auto need_reference = [&] {
-    if (reference) return true;
-    const auto started = Clock::now();
-    reference = read_for(comparison.file.string() + ": scene `" + work.scene->name + "`",
-                         [&] { return make_reference(comparison, *work.scene, request.short_form, request.stop); });
-    if (!reference) return false;
-    work.floor = reference->floor;
-    write_file(work.folder / "floor.json", part_json(work.floor, work.keys.reference));
-    say(request, fmt::format("{}: reference, {}; floor {:.2g} m", work.scene->name,
-                             duration_text(seconds_since(started)), work.floor.floor()));
-    return true;
-  };
-  const auto floor = read_floor(whole_file(work.folder / "floor.json"), work.keys.reference);
-  if (floor)
-    work.floor = *floor;
-  else if (!need_reference())
-    return false;
-  for (std::size_t s = 0; s < work.setups.size(); ++s) {
-    const std::filesystem::path file = work.folder / fmt::format("errors_{}.json", s);
-    const std::string key = work.keys.reference + " " + work.keys.settings[s];
-    std::optional<CompareErrors> errors =
-        work.setups[s] ? read_errors(whole_file(file), key) : CompareErrors{work.trouble[s]};
-    if (!errors) {
-      if (!need_reference()) return false;
-      errors = errors_of(*work.setups[s], *reference, comparison.limits, request.stop);
-      if (!errors) return false;
-      write_file(file, part_json(*errors, key));
-      say(request, fmt::format("{}: errors of {}: {:.2g} m from the reference{}{}", work.scene->name,
-                               comparison.settings[s].name, errors->temporal, errors->trouble.empty() ? "" : ", ",
-                               errors->trouble));
-    }
-    work.errors[s] = *errors;
-  }
-  return true;
-}
-
-// All settings start alike: a scene is prepared once. False: stopped.
-bool prepare_settings(const CompareRequest& request, SceneWork& work) {
-  for (const std::optional<Setup>& setup : work.setups) {
-    if (!setup) continue;
-    const std::optional<Start> start = prepare(*setup, request.stop);
-    if (start) work.start = *start;
-    return start.has_value();
-  }
-  return true;
-}
-
-std::filesystem::path trajectory_of(const std::filesystem::path& folder, std::size_t setting) {
-  return folder / fmt::format("row_{}.h5", setting);
-}
-
-// Every row of an evaluation that a network makes is the bare network, by its stored run.
-void check_bare(const Setup& setup, const std::filesystem::path& trajectory) {
-  if (setup.kind.network != NetworkUse::alone) return;
-  if (const std::string trouble = trouble_of_bare_run(trajectory); !trouble.empty())
-    throw Error("a row of the evaluation is not the bare network: " + trouble, trajectory.string(),
-                "name gated rows by a stepper of their own");
-}
-
-// Every setting once, in turn. False: stopped.
-bool time_settings(const CompareRequest& request, const Comparison& comparison, int repeat, SceneWork& work) {
-  for (std::size_t s = 0; s < work.setups.size(); ++s) {
-    if (!work.setups[s]) continue;
-    const std::filesystem::path file = work.folder / fmt::format("run_{}_{}.json", s, repeat);
-    std::optional<CompareRun> run = read_run(whole_file(file), work.keys.settings[s]);
-    const std::filesystem::path trajectory = trajectory_of(work.folder, s);
-    if (work.keeps && repeat == 0 && !std::filesystem::exists(trajectory)) run.reset();
-    const bool kept = run.has_value();
-    if (!run) {
-      TimedRunOptions options;
-      options.judged_frames = comparison.judged_frames;
-      options.limits = comparison.limits;
-      const bool judged = !comparison.evaluation.baseline.empty();
-      if (repeat == 0 && (work.keeps || judged)) options.trajectory = trajectory;
-      run = timed_run(*work.setups[s], work.start, options, request.stop);
-      if (!run) return false;
-      if (judged && repeat == 0) check_bare(*work.setups[s], trajectory);
-      if (!work.keeps) std::filesystem::remove(trajectory);
-      write_file(file, part_json(*run, work.keys.settings[s]));
-    }
-    say(request, fmt::format("{} {} of {}: {}, {:.1f} ms a frame{}{}", work.scene->name, repeat + 1, comparison.repeats,
-                             comparison.settings[s].name, 1000 * median(run->seconds),
-                             kept ? " (kept from before)" : "", run->trouble.empty() ? "" : ", " + run->trouble));
-    work.runs[s].push_back(std::move(*run));
-  }
-  return true;
-}
 
 CompareRow row_of(const SceneWork& work, const std::string& setting, std::size_t s) {
   CompareRow row;
   row.scene = work.scene->name;
   row.setting = setting;
+  row.machine = work.machine;
   row.outfit = work.scene->outfit;
   row.tangled = work.scene->tangled;
   row.trouble = work.trouble[s];
@@ -268,29 +96,6 @@ bool may_be_ranked(const CompareRow& row) {
 // What may be said of a row's error: no less than the floor.
 double known_error(const CompareRow& row) { return std::max(row.temporal, row.floor); }
 
-void write_results(const CompareRequest& request, const Comparison& comparison, const std::vector<SceneWork>& all,
-                   CompareResult& result) {
-  result.floors.clear();
-  result.rows.clear();
-  for (const SceneWork& work : all) {
-    if (work.floor.scene.empty()) continue;
-    result.floors.push_back(work.floor);
-    for (std::size_t s = 0; s < comparison.settings.size(); ++s)
-      result.rows.push_back(row_of(work, comparison.settings[s].name, s));
-  }
-  rank(result.rows);
-  write_file(request.out / "compare.json", compare_json(result));
-  write_file(request.out / "compare.csv", compare_csv(result));
-  write_file(request.out / "compare.txt", compare_table(result));
-  if (!comparison.evaluation.baseline.empty()) {
-    const Evaluation found = evaluated(comparison, result.floors, result.rows);
-    result.evaluation = evaluation_text(found);
-    write_file(request.out / "evaluation.txt", result.evaluation);
-    write_file(request.out / "evaluation.json", evaluation_json(found));
-  }
-  write_file(request.out / "compare.html", compare_page(comparison, result));
-}
-
 }  // namespace
 
 void rank(std::vector<CompareRow>& rows) {
@@ -303,84 +108,201 @@ void rank(std::vector<CompareRow>& rows) {
   }
 }
 
+namespace {
+
+void write_results(const CompareWork& work, const std::filesystem::path& out, CompareResult& result) {
+  const Comparison& comparison = work.comparison;
+  result.floors.clear();
+  result.rows.clear();
+  for (const std::optional<SceneWork>& scene : work.scenes) {
+    if (!scene || scene->floor.scene.empty()) continue;
+    result.floors.push_back(scene->floor);
+    for (std::size_t s = 0; s < comparison.settings.size(); ++s)
+      result.rows.push_back(row_of(*scene, comparison.settings[s].name, s));
+  }
+  rank(result.rows);
+  write_file(out / "compare.json", compare_json(result));
+  write_file(out / "compare.csv", compare_csv(result));
+  write_file(out / "compare.txt", compare_table(result));
+  if (!comparison.evaluation.baseline.empty()) {
+    const Evaluation found = evaluated(comparison, result.floors, result.rows);
+    result.evaluation = evaluation_text(found);
+    write_file(out / "evaluation.txt", result.evaluation);
+    write_file(out / "evaluation.json", evaluation_json(found));
+  }
+  write_file(out / "compare.html", compare_page(comparison, result));
+}
+
 // One page a scene that plays its rows side by side. It is an extra: nothing is lost where it cannot be made.
-void write_views(const CompareRequest& request, const SceneWork& work, CompareResult& result) {
+void write_views(const SceneWork& work, const std::filesystem::path& out, std::ostream* log, CompareResult& result) {
   if (!work.keeps) return;
   constexpr std::size_t most_rows = 4, most_bytes = 12'000'000;
   std::vector<std::filesystem::path> runs;
   for (std::size_t s = 0; s < work.setups.size() && runs.size() < most_rows; ++s)
-    if (work.setups[s] && std::filesystem::exists(trajectory_of(work.folder, s)))
-      runs.push_back(trajectory_of(work.folder, s));
-  result.views = request.out / "views";
+    if (work.setups[s] && std::filesystem::exists(trajectory_of(work, s))) runs.push_back(trajectory_of(work, s));
+  result.views = out / "views";
   make_folder(result.views);
   try {
     if (!runs.empty()) write_view(runs, result.views / (work.scene->name + ".html"), {.limit = most_bytes});
   } catch (const Error& error) {
-    say(request, work.scene->name + ": no page that plays it: " + error.what());
+    say(log, work.scene->name + ": no page that plays it: " + error.what());
   }
 }
 
 // The volume that rows leave, once all runs are there.
-void add_volumes(const CompareRequest& request, const Comparison& comparison, const std::vector<SceneWork>& all,
-                 CompareResult& result) {
+void add_volumes(const CompareWork& work, const std::filesystem::path& out, CompareResult& result) {
+  const Comparison& comparison = work.comparison;
   if (!comparison.evaluation.volume || !result.finished) return;
   std::vector<KeptRun> runs;
-  for (const SceneWork& work : all)
+  const std::string machine = machine_of_most(result.rows);
+  for (const std::optional<SceneWork>& scene : work.scenes)
     for (std::size_t s = 0; s < comparison.settings.size(); ++s) {
-      const std::filesystem::path run = trajectory_of(work.folder, s);
-      if (!work.setups[s] || !std::filesystem::exists(run)) continue;
-      const double ms = row_of(work, comparison.settings[s].name, s).ms;
-      runs.push_back({comparison.settings[s].name, work.scene->outfit, work.scene->name, run, 1000 / ms});
+      if (!scene || !scene->setups[s] || !std::filesystem::exists(trajectory_of(*scene, s))) continue;
+      const std::string& setting = comparison.settings[s].name;
+      const double ms = scene->machine == machine ? row_of(*scene, setting, s).ms : unknown;
+      runs.push_back({setting, scene->scene->outfit, scene->scene->name, trajectory_of(*scene, s), 1000 / ms});
     }
-  result.evaluation += write_volume_report(runs, comparison.evaluation.baseline, request.out);
+  result.evaluation += write_volume_report(runs, comparison.evaluation.baseline, out);
 }
 
 // The tables of the repulsive layer, of the trainings that are there. False: stopped.
-bool report_drapes(const CompareRequest& request, const Comparison& comparison, CompareResult& result) {
-  if (comparison.drapes.empty()) return true;
-  result.views = request.out / "views";
+bool report_drapes(const CompareWork& work, const std::filesystem::path& out, CompareResult& result) {
+  if (work.comparison.drapes.empty()) return true;
+  result.views = out / "views";
   std::vector<MeasuredDrapes> all;
-  for (const ComparedDrapes& one : comparison.drapes) {
-    std::optional<MeasuredDrapes> made = measured_drapes(one, result.views, request.log, request.stop);
+  for (const ComparedDrapes& one : work.comparison.drapes) {
+    std::optional<MeasuredDrapes> made = measured_drapes(one, result.views, work.request.log, work.request.stop);
     if (!made) return false;
-    if (!made->rows.empty()) write_file(request.out / (one.name + ".csv"), drape_table_csv(made->rows));
+    if (!made->rows.empty()) write_file(out / (one.name + ".csv"), drape_table_csv(made->rows));
     all.push_back(std::move(*made));
     result.repulsion = repulsion_tables(all);
     result.repulsion_figures = repulsion_figures(all);
-    write_file(request.out / "repulsion.txt", result.repulsion);
+    write_file(out / "repulsion.txt", result.repulsion);
   }
   return true;
 }
 
-CompareResult compare(const CompareRequest& request) {
-  Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
+std::shared_ptr<CompareWork> read_work(const CompareRequest& request) {
+  auto work = std::make_shared<CompareWork>();
+  work->request = request;
+  work->program = program_key();
+  Comparison& comparison = work->comparison;
+  comparison = read_comparison(request.file, request.short_form, request.overrides);
   comparison.kinds = request.kinds;
   if (!comparison.sequences.training.empty())
     add_training_sequences(comparison);
   else if (comparison.sequences.count > 0)
     add_sequences(comparison);
-  if (!comparison.split_text.empty()) say(request, comparison.split_text);
-  const std::string program = program_key();
-  make_folder(request.out);
-  std::vector<SceneWork> all;
-  for (const CompareScene& scene : comparison.scenes) all.push_back(open_scene(request, comparison, scene, program));
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].keeps = static_cast<int>(k) < comparison.keep_runs;
-  CompareResult result;
-  result.finished = report_drapes(request, comparison, result);
-  for (SceneWork& work : all) {
-    if (!result.finished) break;
-    result.finished = find_errors(request, comparison, work) && prepare_settings(request, work);
-    for (int repeat = 0; result.finished && repeat < comparison.repeats; ++repeat) {
-      result.finished = time_settings(request, comparison, repeat, work);
-      write_results(request, comparison, all, result);
-    }
-    if (!result.finished) break;
-    write_views(request, work, result);
+  for (const CompareScene& scene : comparison.scenes) work->names.push_back(cell_name(scene.name));
+  number_equal_names(work->names);
+  work->scenes.resize(comparison.scenes.size());
+  return work;
+}
+
+SceneWork& scene_of(CompareWork& work, std::size_t k) {
+  std::optional<SceneWork>& scene = work.scenes[k];
+  if (!scene) {
+    scene = open_scene(work.comparison, work.comparison.scenes[k], work.request.short_form, work.program);
+    scene->keeps = static_cast<int>(k) < work.comparison.keep_runs;
   }
-  write_results(request, comparison, all, result);
-  add_volumes(request, comparison, all, result);
-  write_compare_hdf5(request.out / "compare.h5", result);
-  result.plots = plot_comparison(result, request.out);
+  return *scene;
+}
+
+// Absent: stopped.
+std::optional<CellResult> run_scene_cell(CompareWork& work, std::size_t k, const std::filesystem::path& folder,
+                                         const CellWatch& watch) {
+  SceneWork& scene = scene_of(work, k);
+  scene.folder = folder;
+  if (!measure_scene(work.comparison, work.request.short_form, watch, scene)) return {};
+  std::uint64_t positions = hash_of("");
+  for (const std::vector<CompareRun>& runs : scene.runs)
+    for (const CompareRun& run : runs) positions = hash_of(std::to_string(run.end), positions);
+  return CellResult{part_json(scene.floor, scene.keys.reference), true, positions};
+}
+
+// Each run counts its own steps; references take 16 a frame, and as many again for the floor.
+double rough_seconds_of(const Comparison& comparison, const SceneWork& work) {
+  double sum = 0;
+  for (const std::optional<Setup>& setup : work.setups) {
+    if (!setup) continue;
+    const int vertices = setup->scene.surface.vertex_count, frames = setup->run.frames;
+    if (sum == 0 && work.scene->states > 0)
+      sum = rough_seconds(vertices, 16 * frames + 32 * work.scene->states * work.scene->horizon);
+    sum += comparison.repeats * rough_seconds(vertices, frames);
+  }
+  return sum;
+}
+
+// What a scene's cell has measured becomes part of the results.
+void take_in(CompareWork& work, const CellRecord& record, const std::filesystem::path& out, CompareResult& result) {
+  const auto found = std::ranges::find(work.names, record.cell);
+  SceneWork& scene = scene_of(work, static_cast<std::size_t>(found - work.names.begin()));
+  scene.folder = cell_folder(out, record.cell);
+  read_measured(work.comparison, record.machine, scene);
+  write_views(scene, out, work.request.log, result);
+}
+
+// What needs all scenes, or is not worth making for each.
+void write_last(const CompareWork& work, const std::filesystem::path& out, CompareResult& result) {
+  write_results(work, out, result);
+  add_volumes(work, out, result);
+  write_compare_hdf5(out / "compare.h5", result);
+  result.plots = plot_comparison(result, out);
+}
+
+std::string result_text(const CompareResult& result, const std::filesystem::path& out) {
+  return compare_table(result) + result.evaluation + result.repulsion + result.plots + "\n" +
+         (out / "compare.html").string() + "\n";
+}
+
+CellTables gather_scenes(CompareWork& work, const std::vector<CellRecord>& records, const std::filesystem::path& out) {
+  CompareResult result;
+  report_drapes(work, out, result);
+  for (const CellRecord& record : records) take_in(work, record, out, result);
+  result.finished = records.size() == work.names.size();
+  write_last(work, out, result);
+  return {result_text(result, out), compare_json(result), true};
+}
+
+CellList list_of(const std::shared_ptr<CompareWork>& work) {
+  CellList list;
+  list.kind = "compare";
+  list.program = work->program;
+  list.names = work->names;
+  list.keeps_parts = true;
+  list.describe = [work](std::size_t k) {
+    const SceneWork& scene = scene_of(*work, k);
+    return Cell{work->names[k], needs_of(work->comparison, scene), rough_seconds_of(work->comparison, scene)};
+  };
+  list.key = [work](std::size_t k) { return key_of(work->comparison, scene_of(*work, k)); };
+  list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {
+    return run_scene_cell(*work, k, folder, watch);
+  };
+  list.gather = [work](const std::vector<CellRecord>& records, const std::filesystem::path& out) {
+    return gather_scenes(*work, records, out);
+  };
+  return list;
+}
+
+}  // namespace
+
+CellList compare_cells(const CompareRequest& request) { return list_of(read_work(request)); }
+
+CompareResult compare(const CompareRequest& request) {
+  const std::shared_ptr<CompareWork> work = read_work(request);
+  if (!work->comparison.split_text.empty()) say(request.log, work->comparison.split_text);
+  for (std::size_t k = 0; k < work->names.size(); ++k) scene_of(*work, k);  // errors before hours of work
+  make_folder(request.out);
+  CompareResult result;
+  result.finished = report_drapes(*work, request.out, result);
+  const CellWatch watch{request.log, request.stop, true};
+  if (result.finished)
+    result.finished = do_cells(list_of(work), request.out, watch, [&](const DoneCell& done) {
+      if (done.kept) say(request.log, done.record.cell + ": kept from before");
+      take_in(*work, done.record, request.out, result);
+      write_results(*work, request.out, result);
+    });
+  write_last(*work, request.out, result);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/cells/cell_list.hpp"
 #include "pipeline/compare/compare_result.hpp"
 #include "pipeline/compare/comparison.hpp"
 #include "pipeline/compare/svg_plots.hpp"
@@ -23,10 +24,14 @@ struct CompareRequest {
 };
 
 // Runs every setting on every scene `repeats` times, in turn, and holds it against two references from common states:
-// its own time step solved to the end (algebraic), and steps of a 16th of a frame (temporal). What is finished is kept
-// in the folder and not done again by the same program and settings. Leaves compare.txt, .csv, .json, .h5, .html and
-// plots, and of an evaluation (evaluation.hpp) evaluation.txt and .json.
+// its own time step solved to the end (algebraic), and steps of a 16th of a frame (temporal). A scene is a cell; what
+// is finished is kept in the folder and not done again by the same program and settings. Leaves compare.txt, .csv,
+// .json, .h5, .html and plots, and of an evaluation (evaluation.hpp) evaluation.txt and .json.
 CompareResult compare(const CompareRequest&);
+
+// The scenes as cells: the floor, errors and timed runs of a scene belong together, on one machine, in turn. Gathering
+// measures the trainings of drapes. `out`, `log` and `stop` of the request have no part in them.
+CellList compare_cells(const CompareRequest&);
 
 // Sets ranked and front of the rows of one scene or several. A hybrid row is neither where less than 30 % of its frames
 // were made of proposals.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "pipeline/compare/compare.hpp"
@@ -67,6 +68,7 @@ Json row_json(const CompareRow& row) {
   for (const auto& [name, value] : row.measures) json[name] = number_or_null(value);
   json["pairs_by_frame"] = row.pairs_by_frame;
   json["trouble"] = row.trouble;
+  json["machine"] = row.machine;
   return json;
 }
 
@@ -82,6 +84,9 @@ std::string quoted(const std::string& text) {
 
 std::string compare_table(const CompareResult& result) {
   std::string text;
+  std::map<std::string, std::string> machines;  // of scenes
+  std::set<std::string> different;
+  for (const CompareRow& row : result.rows) different.insert(machines[row.scene] = row.machine);
   for (const CompareFloor& f : result.floors) {
     text += fmt::format("{}: {} vertices, {} frames", f.scene, f.vertices, f.frames);
     text += f.states == 0 ? std::string("\n")
@@ -91,6 +96,8 @@ std::string compare_table(const CompareResult& result) {
                                 "jittered {:.2g}); it loses "
                                 "{:.3g} J in all\n",
                                 f.states, f.horizon, f.motion, f.floor(), f.steps, f.jittered, f.lost);
+    if (different.size() > 1)
+      text += fmt::format("  timed on {}; times of other machines are not ranked with these\n", machines[f.scene]);
     text += fmt::format("  {:<24}", "setting");
     for (const Column& column : columns()) text += fmt::format(" {:>10}", column.title);
     text += fmt::format(" {:>10}\n", "share");
@@ -112,13 +119,13 @@ std::string compare_csv(const CompareResult& result) {
   for (const CompareRow& row : result.rows)
     for (const auto& [name, value] : row.measures) measures.insert(name);
   for (const std::string& name : measures) text += "," + name;
-  text += ",trouble\n";
+  text += ",trouble,machine\n";
   for (const CompareRow& row : result.rows) {
     text += fmt::format("{},{}", quoted(row.scene), quoted(row.setting));
     const auto add = [&](double value) { text += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ","; };
     for (const Column& column : columns()) add(column.value(row));
     for (const std::string& name : measures) add(row.measure(name));
-    text += fmt::format(",{}\n", quoted(row.trouble));
+    text += fmt::format(",{},{}\n", quoted(row.trouble), quoted(row.machine));
   }
   return text;
 }

@@ -26,6 +26,7 @@ struct CompareFloor {
 // A setting on a scene.
 struct CompareRow {
   std::string scene, setting;
+  std::string machine;                                      // that has timed it (machine_name.hpp)
   std::string outfit;                                       // of a sequence
   bool tangled = false;                                     // it starts so
   std::string trouble;                                      // why it was left out or what went wrong; empty: nothing

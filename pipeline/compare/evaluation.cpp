@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "pipeline/run/summary.hpp"
 #include "pipeline/training/random_stream.hpp"
@@ -82,6 +84,14 @@ void describe_tangled(const Rows& rows, int frames, EvaluatedRow& row) {
   }
 }
 
+using ScenesOfMachine = std::map<std::string, std::set<std::string>>;
+
+ScenesOfMachine scenes_of_machines(const std::vector<CompareRow>& rows) {
+  ScenesOfMachine scenes;
+  for (const CompareRow& row : rows) scenes[row.machine].insert(row.scene);
+  return scenes;
+}
+
 EvaluatedRow described(const Comparison& comparison, const Evaluation& evaluation, const std::vector<CompareRow>& all,
                        const std::string& setting) {
   EvaluatedRow row;
@@ -103,7 +113,8 @@ EvaluatedRow described(const Comparison& comparison, const Evaluation& evaluatio
   row.body_pairs = mean_measure(rows, "body_pairs_mean");
   describe_tangled(rows, comparison.evaluation.left_frames, row);
   std::vector<double> ms;
-  for (const CompareRow* one : rows) ms.push_back(one->ms);
+  for (const CompareRow* one : rows)
+    if (one->machine == evaluation.machine) ms.push_back(one->ms);
   if (!ms.empty()) row.frames_a_second = 1000 / median(ms);
   row.strain = mean_measure(rows, "strain");
   row.strain_99 = mean_measure(rows, "strain_99");
@@ -130,6 +141,12 @@ PairedRatio ratio_of(const std::vector<CompareRow>& all, const std::string& row,
 }
 
 }  // namespace
+
+std::string machine_of_most(const std::vector<CompareRow>& rows) {
+  const ScenesOfMachine scenes = scenes_of_machines(rows);
+  const auto count = [](const auto& one) { return one.second.size(); };
+  return scenes.empty() ? std::string() : std::ranges::max_element(scenes, {}, count)->first;
+}
 
 PairedRatio paired_ratio(const std::vector<double>& pairs, const std::vector<double>& baseline, int resamples,
                          std::uint64_t seed) {
@@ -170,6 +187,9 @@ Evaluation evaluated(const Comparison& comparison, const std::vector<CompareFloo
     const auto floor = std::ranges::find(floors, row.scene, &CompareFloor::scene);
     evaluation.vertices.push_back(floor == floors.end() ? 0 : floor->vertices);
   }
+  evaluation.machine = machine_of_most(rows);
+  for (const auto& [machine, timed] : scenes_of_machines(rows))
+    if (machine != evaluation.machine) evaluation.timed_elsewhere += static_cast<int>(timed.size());
   int most = -1;
   for (const CompareRow& row : rows) {
     if (row.setting != evaluation.baseline || row.pairs_by_frame.empty()) continue;
@@ -184,7 +204,7 @@ Evaluation evaluated(const Comparison& comparison, const std::vector<CompareFloo
     for (const std::string& outfit : evaluation.outfits) {
       std::vector<double> ms;
       for (const CompareRow* row : rows_of(rows, setting.name))
-        if (row->outfit == outfit) ms.push_back(row->ms);
+        if (row->outfit == outfit && row->machine == evaluation.machine) ms.push_back(row->ms);
       if (!ms.empty()) speeds.emplace_back(outfit, 1000 / median(ms));
     }
     if (!speeds.empty()) evaluation.speeds.emplace_back(setting.name, speeds);

@@ -41,12 +41,17 @@ struct Evaluation {
   std::vector<std::string> outfits;
   std::vector<int> vertices;  // of them
   int tangled = 0;            // of the sequences, with pairs where they start
+  std::string machine;        // that has timed most of them: speeds are of these alone
+  int timed_elsewhere = 0;    // sequences that other machines have timed
   std::vector<EvaluatedRow> rows;
   std::vector<PairedRatio> ratios;                                                          // of every two rows
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, double>>>> speeds;  // of a row: outfit, fps
   std::string shown;  // the sequence whose pairs are shown by frame
   std::vector<std::pair<std::string, std::vector<int>>> by_frame;
 };
+
+// The machine that has timed most scenes: times of others are not to be compared with its.
+std::string machine_of_most(const std::vector<CompareRow>&);
 
 // The evaluation of the finished rows, for people and as JSON. A row without a result keeps its trouble.
 Evaluation evaluated(const Comparison&, const std::vector<CompareFloor>&, const std::vector<CompareRow>&);

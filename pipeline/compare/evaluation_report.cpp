@@ -71,6 +71,9 @@ std::string evaluation_text(const Evaluation& e) {
                           shown(100 * row.strain, "{:.2f}"), shown(100 * row.strain_99, "{:.1f}"),
                           shown(1000 * row.depth, "{:.2f}"), shown(row.kinetic_ratio, "{:.2f}"),
                           shown(row.jitter_ratio, "{:.2f}"), shown(row.frames_a_second));
+  if (e.timed_elsewhere > 0)
+    text += fmt::format("  frames/s are of {}; times of {} sequences, which other machines have made, are left out\n",
+                        e.machine, e.timed_elsewhere);
   return text + strain_by_outfit(e) + "\n";
 }
 
@@ -116,9 +119,11 @@ std::string evaluation_json(const Evaluation& e) {
   for (const auto& [row, pairs] : e.by_frame) by_frame[row] = pairs;
   for (const auto& [row, of_outfits] : e.speeds)
     for (const auto& [outfit, fps] : of_outfits) speeds[row][outfit] = fps;
-  const Json json = {{"baseline", e.baseline}, {"outfits", outfits},       {"tangled", e.tangled},
-                     {"rows", rows},           {"ratios", ratios},         {"shown", e.shown},
-                     {"by_frame", by_frame},   {"frames_a_second", speeds}};
+  const Json json = {{"baseline", e.baseline}, {"outfits", outfits},
+                     {"tangled", e.tangled},   {"rows", rows},
+                     {"ratios", ratios},       {"shown", e.shown},
+                     {"by_frame", by_frame},   {"frames_a_second", speeds},
+                     {"machine", e.machine},   {"timed_elsewhere", e.timed_elsewhere}};
   return json_text(json);
 }
 

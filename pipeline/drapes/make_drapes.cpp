@@ -5,22 +5,14 @@
 #include <algorithm>
 
 #include "collision/audit/audit.hpp"
-#include "collision/geometry/error.hpp"
-#include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/search/obstacle.hpp"
 #include "physics/frame/make_frame.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/garments/garment_hdf5.hpp"
-#include "pipeline/host/folder_lock.hpp"
-#include "pipeline/host/numbers_json.hpp"
-#include "pipeline/host/read_file.hpp"
-#include "pipeline/host/write_file.hpp"
 #include "pipeline/measures/motion_measures.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
-#include "pipeline/run/progress.hpp"
 
 namespace selvedge {
 namespace {
@@ -203,70 +195,6 @@ std::optional<DrapePath> make_drape_path(const DrapeWorld& world, std::uint64_t 
   }
   maker.path.seconds = watch.lap();
   return std::move(maker.path);
-}
-
-DatasetSummary make_dataset(const DatasetRequest& request) {
-  restore_standard_arithmetic();
-  const DrapeOptions options = read_drape_options(request.config, request.overrides);
-  DatasetSummary summary;
-  summary.folder = request.out.empty() ? std::filesystem::path("out") / "data" / options.name : request.out;
-  make_folder(summary.folder);
-  const FolderLock lock(summary.folder);
-  const std::filesystem::path config = summary.folder / "config.yaml";
-  if (std::filesystem::exists(config) && drape_yaml(read_drape_options(config)) != drape_yaml(options))
-    throw Error("the folder has drapes of other options", summary.folder.string(), "choose another --out");
-  write_file(config, drape_yaml(options));
-  const DrapeWorld world = make_drape_world(options);
-  write_garment(summary.folder / "garment.h5", world.garment);
-  summary.vertices = world.surface.vertex_count;
-  summary.body_triangles = static_cast<int>(world.body_surface.triangles.rows());
-  std::string table = "path,split,drapes,dropped,poses_redrawn,seconds\n";
-  const int paths = options.training + options.test;
-  for (int k = 0; k < paths; ++k) {
-    const std::filesystem::path file = drape_path_file(summary.folder, k);
-    std::optional<DrapePath> path;
-    if (std::filesystem::exists(file)) {
-      path = read_drape_path(file, static_cast<int>(world.body.joints.size()), world.surface.vertex_count);
-    } else {
-      path = make_drape_path(world, static_cast<std::uint64_t>(k), request.stop);
-      if (!path) return summary;
-      write_drape_path(file, *path);
-    }
-    int dropped = 0;
-    for (const auto& [reason, count] : path->dropped) {
-      summary.dropped[reason] += count;
-      dropped += count;
-    }
-    (k < options.training ? summary.training : summary.test) += static_cast<int>(path->x.size());
-    summary.poses_redrawn += path->poses_redrawn;
-    summary.seconds += path->seconds;
-    table += fmt::format("{},{},{},{},{},{:.2f}\n", k, k < options.training ? "training" : "test", path->x.size(),
-                         dropped, path->poses_redrawn, path->seconds);
-    if (request.log)
-      *request.log << fmt::format("path {} of {}: {} drapes, {} dropped, {}\n", k + 1, paths, path->x.size(), dropped,
-                                  duration_text(path->seconds))
-                   << std::flush;
-  }
-  write_file(summary.folder / "drapes.csv", table);
-  summary.finished = true;
-  return summary;
-}
-
-std::string dataset_text(const DatasetSummary& s) {
-  std::string text = fmt::format(
-      "{:<20}{}\n{:<20}{} vertices; body of {} triangles\n{:<20}{} to train on, {} to measure on\n{:<20}{}\n",
-      s.finished ? "made" : "stopped", s.folder.string(), "garment", s.vertices, s.body_triangles, "drapes", s.training,
-      s.test, "time", duration_text(s.seconds));
-  for (const auto& [reason, count] : s.dropped) text += fmt::format("{:<20}{}: {}\n", "dropped", reason, count);
-  return text + fmt::format("{:<20}{}\n", "poses drawn anew", s.poses_redrawn);
-}
-
-std::string dataset_json(const DatasetSummary& s) {
-  const nlohmann::ordered_json json = {
-      {"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
-      {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
-      {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}};
-  return json_text(json);
 }
 
 }  // namespace selvedge

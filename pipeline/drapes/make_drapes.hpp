@@ -4,6 +4,7 @@
 #include <optional>
 #include <ostream>
 
+#include "pipeline/cells/cell_list.hpp"
 #include "pipeline/drapes/drape_set.hpp"
 
 namespace selvedge {
@@ -32,9 +33,13 @@ struct DatasetSummary {
   double seconds = 0;                  // of all paths
 };
 
-// Makes the paths that the folder lacks, and writes a file per path, garment.h5, config.yaml and drapes.csv. The same
-// command continues a stopped run. Throws Error, also for a folder of other options.
+// Makes the paths that the folder lacks, each as a cell, and writes a file per path, garment.h5, config.yaml and
+// drapes.csv. The same command continues a stopped run. Throws Error, also for a folder of other options.
 DatasetSummary make_dataset(const DatasetRequest&);
+
+// The cells path_K. Gathering puts the paths of cells that are there into the folder, as make_dataset leaves it. `out`,
+// `log` and `stop` of the request have no part in them.
+CellList dataset_cells(const DatasetRequest&);
 std::string dataset_text(const DatasetSummary&);
 std::string dataset_json(const DatasetSummary&);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,12 +17,12 @@ inline std::string kept_row_json(const nlohmann::ordered_json& fields, const std
   return json_text(json);
 }
 
-// What read(json, row) makes of a kept row's text; nothing where the key is another, or a field is missing or of
-// another type, as in a file of another version.
+// What read(json, row) makes of a text; nothing where it is no JSON object, or a field is missing or of another type,
+// as in a file of another version.
 template <class Row, class Read>
-std::optional<Row> read_kept_row(const std::string& text, const std::string& key, const Read& read) {
+std::optional<Row> read_row(const std::string& text, const Read& read) {
   const nlohmann::ordered_json json = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return {};
+  if (json.is_discarded() || !json.is_object()) return {};
   try {
     Row row;
     read(json, row);
@@ -31,18 +32,38 @@ std::optional<Row> read_kept_row(const std::string& text, const std::string& key
   }
 }
 
+// The same of a kept row; nothing where the key is another.
+template <class Row, class Read>
+std::optional<Row> read_kept_row(const std::string& text, const std::string& key, const Read& read) {
+  const auto with_key = [&](const nlohmann::ordered_json& json, std::optional<Row>& row) {
+    if (json.value("key", "") == key) read(json, row.emplace());
+  };
+  return read_row<std::optional<Row>>(text, with_key).value_or(std::nullopt);
+}
+
 // A list of fields binds a row to its JSON: fields(row, visit) calls visit(name, row.member) for each. Values that are
-// computed of the row are written and not read back.
+// computed of the row are written and not read back. A number that is not finite is null, and is read as unknown (NaN).
 template <class Row, class Fields>
 nlohmann::ordered_json row_to_json(const Row& row, const Fields& fields) {
   nlohmann::ordered_json json;
-  fields(row, [&](const char* name, const auto& value) { json[name] = value; });
+  fields(row, [&]<class Value>(const char* name, const Value& value) {
+    if constexpr (std::is_same_v<Value, double>)
+      json[name] = number_or_null(value);
+    else
+      json[name] = value;
+  });
   return json;
 }
 template <class Row, class Fields>
 void row_from_json(const nlohmann::ordered_json& json, const Fields& fields, Row& row) {
   fields(row, [&]<class Value>(const char* name, Value&& value) {
-    if constexpr (std::is_lvalue_reference_v<Value>) json.at(name).get_to(value);
+    if constexpr (std::is_lvalue_reference_v<Value>) {
+      const nlohmann::ordered_json& field = json.at(name);
+      if constexpr (std::is_same_v<Value, double&>)
+        value = field.is_null() ? std::numeric_limits<double>::quiet_NaN() : field.get<double>();
+      else
+        field.get_to(value);
+    }
   });
 }
 

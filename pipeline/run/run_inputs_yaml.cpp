@@ -71,17 +71,22 @@ std::vector<fs::path> named_files(const std::string& text, const fs::path& folde
   return files;
 }
 
-fs::path folder_of(const Setup& setup, const YAML::Node& config) {
-  const YAML::Node folder = config["folder"];
-  return folder && folder.IsScalar() ? fs::path(folder.Scalar()) : setup.file.parent_path();
-}
-
-std::vector<InputFile> input_files(const Setup& setup) {
-  const YAML::Node config = YAML::Load(setup.config);
-  if (!config.IsMap()) return {};
-  std::vector<std::string> texts;
-  add_texts(config, texts);
-  return hashed_files(texts, folder_of(setup, config));
+// Adds a tree to a hash: a value that names files stands for their bytes, and folders for nothing.
+std::uint64_t hash_of_tree(const YAML::Node& node, const fs::path& folder, std::uint64_t hash) {
+  if (node.IsScalar()) {
+    const std::vector<InputFile> files = hashed_files({node.Scalar()}, folder);
+    if (files.empty()) return hash_of(node.Scalar() + "\n", hash);
+    for (const InputFile& file : files)
+      hash = hash_of({reinterpret_cast<const char*>(&file.hash), sizeof file.hash}, hash);
+    return hash;
+  }
+  if (node.IsSequence())
+    for (const YAML::Node& item : node) hash = hash_of_tree(item, folder, hash_of("-", hash));
+  if (node.IsMap())
+    for (const auto& pair : node)
+      if (const std::string key = pair.first.Scalar(); key != "folder")
+        hash = hash_of_tree(pair.second, folder, hash_of(key + ":", hash));
+  return hash;
 }
 
 // A hash of arrays, one after the other, with their sizes.
@@ -130,6 +135,24 @@ std::vector<InputFile> hashed_files(const std::vector<std::string>& texts, const
       if (fs::is_regular_file(file, ignored) && seen.insert(name).second) files.push_back({name, hash_of_file(file)});
     }
   return files;
+}
+
+fs::path input_folder(const Setup& setup) {
+  const YAML::Node config = YAML::Load(setup.config);
+  const YAML::Node folder = config.IsMap() ? config["folder"] : YAML::Node();
+  return folder && folder.IsScalar() ? fs::path(folder.Scalar()) : setup.file.parent_path();
+}
+
+std::vector<InputFile> input_files(const Setup& setup) {
+  const YAML::Node config = YAML::Load(setup.config);
+  if (!config.IsMap()) return {};
+  std::vector<std::string> texts;
+  add_texts(config, texts);
+  return hashed_files(texts, input_folder(setup));
+}
+
+std::uint64_t hash_anywhere(const Setup& setup) {
+  return hash_of_tree(YAML::Load(setup.config), input_folder(setup), hash_of(""));
 }
 
 RunInputs run_inputs(const Setup& setup) { return {setup.config, input_files(setup), scene_hash(setup)}; }

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <memory>
 
 #include "collision/geometry/error.hpp"
 #include "physics/frame/frame_audits.hpp"
+#include "pipeline/cells/do_cells.hpp"
+#include "pipeline/cells/scene_cells.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/run_scene.hpp"
@@ -29,29 +32,40 @@ std::vector<StabilityCase> chosen_cases(const StabilitySuite& suite, const Stabi
   return chosen;
 }
 
-std::filesystem::path weights_of(const StabilityRequest& request, const StabilityRun& run) {
-  return run.fault.empty() ? *request.weights : request.out / ("weights_" + run.fault + ".h5");
-}
+// A cell: a run of a case.
+struct StabilityCell {
+  StabilityCase of;
+  std::size_t number = 0;  // of the run in its case
+  const StabilityRun& run() const { return of.runs[number]; }
+  std::string folder() const { return fmt::format("{}_{}", of.name, number); }
+};
 
-void write_spoiled_weights(const StabilityRequest& request, const std::vector<StabilityCase>& cases) {
-  const WeightFile file = read_weight_file(*request.weights);
-  std::set<std::string> faults;
-  for (const StabilityCase& one : cases)
-    for (const StabilityRun& run : one.runs)
-      if (!run.fault.empty()) faults.insert(run.fault);
-  for (const std::string& fault : faults)
-    write_weight_file(request.out / ("weights_" + fault + ".h5"), spoiled_weights(file, fault));
-}
+struct StabilityWork {
+  StabilityRequest request;
+  StabilityLimits limits;
+  std::vector<StabilityCell> cells;
+  LastSetup last;
+};
 
-Setup read_run(const StabilityRequest& request, const StabilityCase& one, const StabilityRun& run) {
+// `weights`: of the network; none where neither the request nor a fault of the run gives any.
+Setup read_run(const StabilityRequest& request, const StabilityCell& cell,
+               const std::optional<std::filesystem::path>& weights) {
   std::vector<std::string> overrides;
   if (request.stepper) overrides.push_back("run.stepper=" + *request.stepper);
-  if (request.weights)
-    overrides.push_back("run.learned.weights=" +
-                        quoted_yaml(std::filesystem::absolute(weights_of(request, run)).string()));
-  overrides.insert(overrides.end(), run.overrides.begin(), run.overrides.end());
-  return read_for(fmt::format("{}: run `{}` of case `{}`", request.suite.string(), run.name, one.name),
-                  [&] { return read_setup(one.scene, overrides, request.kinds); });
+  if (weights) overrides.push_back("run.learned.weights=" + quoted_yaml(std::filesystem::absolute(*weights).string()));
+  overrides.insert(overrides.end(), cell.run().overrides.begin(), cell.run().overrides.end());
+  return read_for(fmt::format("{}: run `{}` of case `{}`", request.suite.string(), cell.run().name, cell.of.name),
+                  [&] { return read_setup(cell.of.scene, overrides, request.kinds); });
+}
+
+// With the fault of its run in the weights, which are then written to the file.
+Setup read_faulty_run(const StabilityRequest& request, const StabilityCell& cell, const std::filesystem::path& file) {
+  write_weight_file(file, spoiled_weights(read_weight_file(*request.weights), cell.run().fault));
+  return read_run(request, cell, file);
+}
+
+const Setup& setup_of(StabilityWork& work, std::size_t k) {
+  return work.last.get(k, [&] { return read_run(work.request, work.cells[k], work.request.weights); });
 }
 
 int frames_of(const RunSummary& summary, Verdict verdict) {
@@ -85,16 +99,14 @@ void judge_row(const RunSummary& summary, const StabilityLimits& limits, Network
 }
 
 // Absent: stopped before its end.
-std::optional<StabilityRow> run_one(const StabilityRequest& request, const StabilityLimits& limits,
-                                    const StabilityCase& one, const StabilityRun& run,
-                                    const std::filesystem::path& folder) {
+std::optional<CellResult> run_one(const StabilityWork& work, const StabilityCell& cell, const Setup& setup,
+                                  const std::filesystem::path& folder, const CellWatch& cell_watch) {
   const Clock::time_point started = Clock::now();
-  const Setup setup = read_run(request, one, run);
-  const std::optional<Start> start = prepare(setup, request.stop);
+  const std::optional<Start> start = prepare(setup, cell_watch.stop);
   if (!start) return {};
   StabilityRow row;
-  row.name = one.name;
-  row.run = run.name;
+  row.name = cell.of.name;
+  row.run = cell.run().name;
   row.vertices = setup.scene.surface.vertex_count;
   row.frames_wanted = setup.run.frames;
   std::unique_ptr<Stepper> stepper;
@@ -102,13 +114,13 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
     stepper = make_stepper(setup);
   } catch (const Error& error) {
     row.failures = {error.what()};
-    return row;
+    return CellResult{stability_row_json(row), false};
   }
   StabilityWatch watch(setup, start->state, stepper->traits());
   RunRequest to_run;
   to_run.out = folder;
   to_run.checkpoint_seconds = 1e9;
-  to_run.stop = request.stop;
+  to_run.stop = cell_watch.stop;
   to_run.observe = [&](const FrameEvent& event) {
     watch(event);
     if (event.state.frame < setup.run.frames) return;
@@ -127,47 +139,103 @@ std::optional<StabilityRow> run_one(const StabilityRequest& request, const Stabi
   row.notes = setup.warnings;
   row.proposed = frames_of(summary, Verdict::admitted) + frames_of(summary, Verdict::refined);
   static_cast<StabilityMeasures&>(row) = watch.measures();
-  judge_row(summary, limits, setup.kind.network, row);
+  judge_row(summary, work.limits, setup.kind.network, row);
   row.seconds = seconds_since(started);
-  keep_or_remove(folder, !row.passed(), request.log);
-  return row;
+  keep_or_remove(folder, !row.passed(), cell_watch.log);
+  return CellResult{stability_row_json(row), row.passed(), summary.positions_hash};
+}
+
+std::optional<CellResult> run_cell(StabilityWork& work, std::size_t k, const std::filesystem::path& folder,
+                                   const CellWatch& watch) {
+  const StabilityCell& cell = work.cells[k];
+  const std::filesystem::path weights = folder / "faulty_weights.h5";
+  const bool faulty = work.request.weights && !cell.run().fault.empty();
+  std::optional<CellResult> result =
+      faulty ? run_one(work, cell, read_faulty_run(work.request, cell, weights), folder / "run", watch)
+             : run_one(work, cell, setup_of(work, k), folder / "run", watch);
+  if (result && result->passed) std::filesystem::remove(weights);
+  return result;
 }
 
 std::string log_line(const StabilityRow& row) {
-  std::string line =
-      fmt::format("{} {}: {}, {:.1f} s\n", row.name, row.run, row.passed() ? "passed" : "FAILED", row.seconds);
+  std::string line = fmt::format("{} {}: {}, {:.1f} s{}\n", row.name, row.run, row.passed() ? "passed" : "FAILED",
+                                 row.seconds, row.kept ? " (kept from before)" : "");
   for (const auto* reasons : {&row.failures, &row.told})
     for (const std::string& why : *reasons) line += "  " + why + "\n";
   return line;
 }
 
-void write_tables(const std::filesystem::path& out, const std::vector<StabilityRow>& rows) {
-  write_file(out / "stability.txt", stability_table(rows));
+CellTables write_tables(const std::filesystem::path& out, const std::vector<StabilityRow>& rows) {
+  const CellTables tables{stability_table(rows), stability_json(rows), passed(rows)};
+  write_file(out / "stability.txt", tables.text);
   write_file(out / "stability.csv", stability_csv(rows));
-  write_file(out / "stability.json", stability_json(rows));
+  write_file(out / "stability.json", tables.json);
   write_file(out / "stability.md", stability_markdown(rows));
+  return tables;
+}
+
+StabilityWork read_work(const StabilityRequest& request) {
+  const StabilitySuite suite = read_stability_suite(request.suite);
+  StabilityWork work{request, suite.limits, {}, {}};
+  for (const StabilityCase& one : chosen_cases(suite, request))
+    for (std::size_t k = 0; k < one.runs.size(); ++k)
+      if (!request.short_form || one.runs[k].brief) work.cells.push_back({one, k});
+  return work;
+}
+
+// The run of a cell under its cell's name.
+void show_run(const std::filesystem::path& out, const std::string& cell) {
+  show_result(cell_folder(out, cell) / "run", out / cell);
 }
 
 }  // namespace
 
+CellList stability_cells(const StabilityRequest& request) {
+  const auto work = std::make_shared<StabilityWork>(read_work(request));
+  CellList list;
+  list.kind = "stability";
+  list.program = program_key();
+  for (const StabilityCell& cell : work->cells) list.names.push_back(cell_name(cell.folder()));
+  number_equal_names(list.names);
+  list.describe = [work, names = list.names](std::size_t k) {
+    const Setup& setup = setup_of(*work, k);
+    std::vector<std::filesystem::path> needs = needs_of(setup);
+    needs.push_back(work->request.suite);
+    return Cell{names[k], needs, rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
+  };
+  list.key = [work](std::size_t k) {
+    const StabilityLimits& limits = work->limits;
+    return fmt::format("{} {} {} {} {} {}", inputs_key(setup_of(*work, k)), limits.growth, limits.speed, limits.newton,
+                       limits.linear, work->cells[k].run().fault);
+  };
+  list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {
+    return run_cell(*work, k, folder, watch);
+  };
+  list.gather = [](const std::vector<CellRecord>& records, const std::filesystem::path& out) {
+    std::vector<StabilityRow> rows;
+    for (const CellRecord& record : records)
+      if (const std::optional<StabilityRow> row = read_stability_row(record.result.row)) {
+        rows.push_back(*row);
+        show_run(out, record.cell);
+      }
+    return write_tables(out, rows);
+  };
+  return list;
+}
+
 std::vector<StabilityRow> stability(const StabilityRequest& request) {
-  const StabilitySuite suite = read_stability_suite(request.suite);
-  const std::vector<StabilityCase> cases = chosen_cases(suite, request);
-  for (const StabilityCase& one : cases)
-    for (const StabilityRun& run : one.runs) read_run(request, one, run);  // errors before minutes of work
-  make_folder(request.out);
-  if (request.weights) write_spoiled_weights(request, cases);
+  const CellList list = stability_cells(request);
+  for (std::size_t k = 0; k < list.names.size(); ++k) list.describe(k);  // errors before minutes of work
   std::vector<StabilityRow> rows;
-  for (const StabilityCase& one : cases)
-    for (std::size_t k = 0; k < one.runs.size(); ++k) {
-      if (request.short_form && !one.runs[k].brief) continue;
-      const auto row =
-          run_one(request, suite.limits, one, one.runs[k], request.out / fmt::format("{}_{}", one.name, k));
-      if (!row) return rows;
-      rows.push_back(*row);
-      write_tables(request.out, rows);
-      if (request.log) *request.log << log_line(*row) << std::flush;
-    }
+  do_cells(list, request.out, {request.log, request.stop}, [&](const DoneCell& done) {
+    std::optional<StabilityRow> row = read_stability_row(done.record.result.row);
+    if (!row) return;
+    row->kept = done.kept;
+    show_run(request.out, done.record.cell);
+    if (request.log) *request.log << log_line(*row) << std::flush;
+    rows.push_back(std::move(*row));
+    write_tables(request.out, rows);
+  });
   return rows;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/cells/cell_list.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/suites/stability_row.hpp"
 
@@ -31,9 +32,14 @@ struct StabilityRequest {
 // * the numbers of iterations are bounded;
 // * it stays clean if it started clean, or is clean in the end if an obstacle jumped.
 // A bare network must only stay finite or reject a step; other findings are noted. A run that the stepper does not take
-// fails with the reason. Leaves stability.txt, stability.csv, stability.json and stability.md in `out`, and the
+// fails with the reason. A run is a cell, and one that has ended is not run again by the same program and settings.
+// Leaves stability.txt, stability.csv, stability.json and stability.md in `out`, the cells, and as CASE_K the
 // trajectory and page of each failed run.
 std::vector<StabilityRow> stability(const StabilityRequest&);
+
+// The cells CASE_K, where K counts the runs of a case from 0. `out`, `log` and `stop` of the request have no part in
+// them.
+CellList stability_cells(const StabilityRequest&);
 
 // Whether every run passed.
 bool passed(const std::vector<StabilityRow>&);
@@ -43,5 +49,8 @@ std::string stability_table(const std::vector<StabilityRow>&);
 std::string stability_markdown(const std::vector<StabilityRow>&);
 std::string stability_csv(const std::vector<StabilityRow>&);
 std::string stability_json(const std::vector<StabilityRow>&);
+
+std::string stability_row_json(const StabilityRow&);
+std::optional<StabilityRow> read_stability_row(const std::string& json);
 
 }  // namespace selvedge

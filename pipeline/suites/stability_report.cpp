@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/host/json_csv.hpp"
-#include "pipeline/host/numbers_json.hpp"
+#include "pipeline/host/kept_row_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/suites/stability.hpp"
 
@@ -12,35 +12,38 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json stability_to_json(const StabilityRow& r) {
-  return {{"case", r.name},
-          {"run", r.run},
-          {"passed", r.passed()},
-          {"stepper", r.stepper},
-          {"vertices", r.vertices},
-          {"frames", r.frames},
-          {"frames_wanted", r.frames_wanted},
-          {"seconds", r.seconds},
-          {"nonfinite", r.nonfinite},
-          {"largest_energy", r.energy},
-          {"work_of_pins", r.work.pins},
-          {"work_of_obstacles", r.work.obstacles},
-          {"work_of_wind", r.work.wind},
-          {"work_of_response", r.work.response},
-          {"unaccounted_energy", r.unaccounted},
-          {"end_speed", r.end_speed},
-          {"newton_iterations", r.newton},
-          {"linear_iterations", r.linear},
-          {"clean_start", r.clean_start},
-          {"jumped", r.jumped},
-          {"intersecting_pairs", r.pairs},
-          {"end_pairs", r.end_pairs},
-          {"max_stretch", r.max_stretch},
-          {"proposed", r.proposed},
-          {"notes", r.notes},
-          {"told", r.told},
-          {"failures", r.failures}};
-}
+// The fields of a row in its JSON.
+constexpr auto stability_fields = [](auto& r, const auto& visit) {
+  visit("case", r.name);
+  visit("run", r.run);
+  visit("passed", r.passed());
+  visit("stepper", r.stepper);
+  visit("vertices", r.vertices);
+  visit("frames", r.frames);
+  visit("frames_wanted", r.frames_wanted);
+  visit("seconds", r.seconds);
+  visit("nonfinite", r.nonfinite);
+  visit("largest_energy", r.energy);
+  visit("work_of_pins", r.work.pins);
+  visit("work_of_obstacles", r.work.obstacles);
+  visit("work_of_wind", r.work.wind);
+  visit("work_of_response", r.work.response);
+  visit("unaccounted_energy", r.unaccounted);
+  visit("end_speed", r.end_speed);
+  visit("newton_iterations", r.newton);
+  visit("linear_iterations", r.linear);
+  visit("clean_start", r.clean_start);
+  visit("jumped", r.jumped);
+  visit("intersecting_pairs", r.pairs);
+  visit("end_pairs", r.end_pairs);
+  visit("max_stretch", r.max_stretch);
+  visit("proposed", r.proposed);
+  visit("notes", r.notes);
+  visit("told", r.told);
+  visit("failures", r.failures);
+};
+
+Json stability_to_json(const StabilityRow& row) { return row_to_json(row, stability_fields); }
 
 double grown(const StabilityRow& row) { return row.energy > 0 ? 100 * row.unaccounted / row.energy : 0; }
 
@@ -87,6 +90,13 @@ std::string stability_markdown(const std::vector<StabilityRow>& rows) {
         row.name, row.run, verdict_text(row), row.vertices, row.frames, row.energy, row.work.total(), grown(row),
         100 * row.end_speed, row.newton, row.linear, row.end_pairs, row.max_stretch, row.seconds);
   return text;
+}
+
+std::string stability_row_json(const StabilityRow& row) { return json_text(stability_to_json(row)); }
+
+std::optional<StabilityRow> read_stability_row(const std::string& text) {
+  return read_row<StabilityRow>(
+      text, [](const Json& json, StabilityRow& row) { row_from_json(json, stability_fields, row); });
 }
 
 std::string stability_csv(const std::vector<StabilityRow>& rows) {

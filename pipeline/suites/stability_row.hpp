@@ -33,6 +33,7 @@ struct StabilityRow : StabilityMeasures {
   std::vector<std::string> notes;     // warnings of the scene
   std::vector<std::string> told;      // what is not held against a bare network, a line each
   std::vector<std::string> failures;  // why it failed, a line each; empty: passed
+  bool kept = false;                  // from an earlier call
   bool passed() const { return failures.empty(); }
 };
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/cells/do_cells.hpp"
+#include "pipeline/cells/scene_cells.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/jitter.hpp"
@@ -39,11 +42,16 @@ std::vector<std::string> scene_names(const std::filesystem::path& configs) {
   return names;
 }
 
-Setup read_scene(const StressRequest& request, const std::string& name) {
-  const std::filesystem::path file = request.configs / (name + ".yaml");
+std::filesystem::path file_of_scene(const StressRequest& request, const std::string& name) {
+  std::filesystem::path file = request.configs / (name + ".yaml");
   if (!std::filesystem::exists(file))
     throw Error("there is no scene `" + name + "`", request.configs.string(),
                 "scenes: " + joined(scene_names(request.configs)));
+  return file;
+}
+
+Setup read_scene(const StressRequest& request, const std::string& name) {
+  const std::filesystem::path file = file_of_scene(request, name);
   Setup setup = read_setup(file);
   if (setup.outcomes.empty())
     throw Error("the scene states no `outcome`", file.string(), "say what must come true of it");
@@ -84,30 +92,39 @@ std::vector<std::string> failures_of(const StressRow& row, const RunSummary& sum
 struct Repeat {
   std::string scene;
   int index = 0;
-  std::filesystem::path folder;  // of the scene
-  std::string key;               // of the program and its settings
-  std::filesystem::path row_file() const { return folder / fmt::format("repeat_{}.json", index); }
-  std::filesystem::path run_folder() const { return folder / fmt::format("repeat_{}", index); }
+  std::string name() const { return fmt::format("{}.repeat_{}", cell_name(scene), index); }
+};
+
+struct StressWork {
+  StressRequest request;
+  std::vector<Repeat> repeats;
+  LastSetup last;
+  // Repeats of a scene are neighbours, and it is read once for all of them.
+  const Setup& setup_of(std::size_t k) {
+    const std::string& scene = repeats[k].scene;
+    const auto first = std::ranges::find(repeats, scene, &Repeat::scene) - repeats.begin();
+    return last.get(static_cast<std::size_t>(first), [&] { return read_scene(request, scene); });
+  }
 };
 
 // Absent: stopped before its end.
-std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& repeat) {
+std::optional<CellResult> run_repeat(const StressRequest& request, const Repeat& repeat, const Setup& setup,
+                                     const std::filesystem::path& folder, const CellWatch& cell_watch) {
   const Clock::time_point started = Clock::now();
   StressRow row;
   row.scene = repeat.scene;
   row.repeat = repeat.index;
   row.seed = request.seed + static_cast<std::uint64_t>(repeat.index);
-  const Setup setup = read_scene(request, repeat.scene);
-  std::optional<Start> start = prepare(setup, request.stop);
+  std::optional<Start> start = prepare(setup, cell_watch.stop);
   if (!start) return {};
   row.jitter = jitter_start(setup, request.jitter, row.seed, start->state);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
   StressWatch watch;
   RunRequest run;
-  run.out = repeat.run_folder();
+  run.out = folder / "run";
   run.checkpoint_seconds = 1e9;
   run.observe = std::ref(watch);
-  run.stop = request.stop;
+  run.stop = cell_watch.stop;
   const RunSummary summary = run_scene(setup, *start, *stepper, run);
   if (summary.end == RunEnd::interrupted) return {};
 
@@ -130,13 +147,30 @@ std::optional<StressRow> run_repeat(const StressRequest& request, const Repeat& 
   row.outcome = summary.outcome_lines;
   row.failures = failures_of(row, summary, setup);
   row.seconds = seconds_since(started);
-  return row;
+  keep_or_remove(run.out, repeat.index == 0 || !row.passed(), cell_watch.log);
+  return CellResult{stress_row_json(row), row.passed(), summary.positions_hash};
 }
 
-void write_tables(const StressRequest& request, const std::vector<StressRow>& rows) {
-  write_file(request.out / "stress.json", stress_json(rows));
-  write_file(request.out / "stress.csv", stress_csv(rows));
-  write_file(request.out / "stress.txt", stress_table(rows));
+CellTables write_tables(const std::filesystem::path& out, const std::vector<StressRow>& rows) {
+  const CellTables tables{stress_table(rows), stress_json(rows), std::ranges::all_of(rows, &StressRow::passed)};
+  write_file(out / "stress.json", tables.json);
+  write_file(out / "stress.csv", stress_csv(rows));
+  write_file(out / "stress.txt", tables.text);
+  return tables;
+}
+
+void show_run(const std::filesystem::path& out, const StressRow& row, const std::string& cell) {
+  show_result(cell_folder(out, cell) / "run", out / row.scene / fmt::format("repeat_{}", row.repeat));
+}
+
+CellTables gather_stress(const std::vector<CellRecord>& records, const std::filesystem::path& out) {
+  std::vector<StressRow> rows;
+  for (const CellRecord& record : records)
+    if (const std::optional<StressRow> row = read_stress_row(record.result.row)) {
+      rows.push_back(*row);
+      show_run(out, *row, record.cell);
+    }
+  return write_tables(out, rows);
 }
 
 std::string log_line(const StressRow& row, int repeats) {
@@ -147,37 +181,55 @@ std::string log_line(const StressRow& row, int repeats) {
   return line;
 }
 
+StressWork read_work(const StressRequest& request) {
+  StressWork work{request, {}, {}};
+  std::vector<std::string> scenes;  // each once
+  for (const std::string& scene : request.scenes.empty() ? scene_names(request.configs) : request.scenes)
+    if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+  for (const std::string& scene : scenes) {
+    file_of_scene(request, scene);
+    for (int k = 0; k < request.repeats; ++k) work.repeats.push_back({scene, k});
+  }
+  return work;
+}
+
 }  // namespace
 
+CellList stress_cells(const StressRequest& request) {
+  const auto work = std::make_shared<StressWork>(read_work(request));
+  CellList list;
+  list.kind = "stress";
+  list.program = program_key();
+  for (const Repeat& repeat : work->repeats) list.names.push_back(repeat.name());
+  number_equal_names(list.names);
+  list.describe = [work, names = list.names](std::size_t k) {
+    const Setup& setup = work->setup_of(k);
+    return Cell{names[k], needs_of(setup), rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
+  };
+  list.key = [work](std::size_t k) {
+    const StressRequest& asked = work->request;
+    return fmt::format("{} {} {}", inputs_key(work->setup_of(k)), asked.seed, asked.jitter);
+  };
+  list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {
+    return run_repeat(work->request, work->repeats[k], work->setup_of(k), folder, watch);
+  };
+  list.gather = gather_stress;
+  return list;
+}
+
 std::vector<StressRow> stress(const StressRequest& request) {
-  make_folder(request.out);
-  const std::vector<std::string> scenes = request.scenes.empty() ? scene_names(request.configs) : request.scenes;
-  for (const std::string& scene : scenes) read_scene(request, scene);  // errors before hours of work
-  const std::string program = program_key();
+  const CellList list = stress_cells(request);
+  for (std::size_t k = 0; k < list.names.size(); ++k) list.describe(k);  // errors before hours of work
   std::vector<StressRow> rows;
-  for (const std::string& scene : scenes) {
-    const std::filesystem::path folder = request.out / scene;
-    make_folder(folder);
-    const std::string config = whole_file(request.configs / (scene + ".yaml"));
-    bool failed_before = false;
-    for (int k = 0; k < request.repeats; ++k) {
-      const Repeat repeat{scene, k, folder,
-                          fmt::format("{} {:016x} {} {} {}", program, hash_of(config), request.seed, request.jitter,
-                                      request.short_form ? "short" : "full")};
-      std::optional<StressRow> row = read_stress_row(whole_file(repeat.row_file()), repeat.key);
-      if (!row) {
-        row = run_repeat(request, repeat);
-        if (!row) return rows;
-        // The first run of a scene, and its first that failed.
-        keep_or_remove(repeat.run_folder(), k == 0 || (!row->passed() && !failed_before), request.log);
-        write_file(repeat.row_file(), stress_row_json(*row, repeat.key));
-      }
-      failed_before = failed_before || !row->passed();
-      rows.push_back(*row);
-      write_tables(request, rows);
-      if (request.log) *request.log << log_line(*row, request.repeats) << std::flush;
-    }
-  }
+  do_cells(list, request.out, {request.log, request.stop}, [&](const DoneCell& done) {
+    std::optional<StressRow> row = read_stress_row(done.record.result.row);
+    if (!row) return;
+    row->kept = done.kept;
+    show_run(request.out, *row, done.record.cell);
+    if (request.log) *request.log << log_line(*row, request.repeats) << std::flush;
+    rows.push_back(std::move(*row));
+    write_tables(request.out, rows);
+  });
   return rows;
 }
 

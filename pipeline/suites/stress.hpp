@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/cells/cell_list.hpp"
+
 namespace selvedge {
 
 struct StressRequest {
@@ -46,14 +48,18 @@ struct StressRow {
 
 // Runs each scene `repeats` times from jittered starts. Every repeat must run to its end, finite, clean in every frame
 // by the audit, with nothing passed through and under 1 % of its vertex-steps held back by zone shortening, and come to
-// the outcome that the scene states; obstacles may lag only where the scene's outcome says that they must. A repeat
-// that finished is not run again by the same program and settings. Leaves in `out` stress.json, stress.csv and
-// stress.txt, and a folder a scene with the trajectory and page of its first repeat and of its first that failed.
+// the outcome that the scene states; obstacles may lag only where the scene's outcome says that they must. A repeat is
+// a cell, and one that finished is not run again by the same program and settings. Leaves in `out` stress.json,
+// stress.csv and stress.txt, the cells, and as SCENE/repeat_K the trajectory and page of each scene's first repeat and
+// of every one that failed.
 std::vector<StressRow> stress(const StressRequest&);
 
-std::string stress_row_json(const StressRow&, const std::string& key);
-// Absent where the text is none or has another key.
-std::optional<StressRow> read_stress_row(const std::string& json, const std::string& key);
+// The cells SCENE.repeat_K. `out`, `log` and `stop` of the request have no part in them. Throws Error where there is no
+// such scene.
+CellList stress_cells(const StressRequest&);
+
+std::string stress_row_json(const StressRow&);
+std::optional<StressRow> read_stress_row(const std::string& json);
 std::string stress_json(const std::vector<StressRow>&);
 std::string stress_csv(const std::vector<StressRow>&);
 std::string stress_table(const std::vector<StressRow>&);  // a row a repeat, then a row a scene, for people

@@ -64,15 +64,10 @@ std::string text_row(const StressRow& r) {
 
 }  // namespace
 
-std::string stress_row_json(const StressRow& row, const std::string& key) {
-  return kept_row_json(stress_to_json(row), key);
-}
+std::string stress_row_json(const StressRow& row) { return json_text(stress_to_json(row)); }
 
-std::optional<StressRow> read_stress_row(const std::string& text, const std::string& key) {
-  return read_kept_row<StressRow>(text, key, [](const Json& json, StressRow& row) {
-    row_from_json(json, stress_fields, row);
-    row.kept = true;
-  });
+std::optional<StressRow> read_stress_row(const std::string& text) {
+  return read_row<StressRow>(text, [](const Json& json, StressRow& row) { row_from_json(json, stress_fields, row); });
 }
 
 std::string stress_json(const std::vector<StressRow>& rows) {

@@ -1,12 +1,15 @@
 #include "pipeline/suites/wardrobe.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
-
-#include <fmt/format.h>
+#include <memory>
 
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
+#include "pipeline/cells/do_cells.hpp"
+#include "pipeline/cells/scene_cells.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
@@ -14,6 +17,7 @@
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/suites/kept_run.hpp"
@@ -115,34 +119,74 @@ std::vector<std::string> failures_of(const WardrobeRow& row, const RunSummary& s
   return all;
 }
 
-struct RowPlace {
-  std::filesystem::path folder, file;
-  std::string key;  // of the program and its settings
+// A cell: a row's garment or outfit and its clip.
+struct WardrobeCell {
+  Wear wear;
+  ClipEntry clip;
+  bool shown = false;  // its run is kept though it passes
+  std::string name() const { return wear.name + "." + clip.name; }
 };
 
-// Absent: stopped before its end.
-std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& wear, const ClipEntry& clip,
-                                   const RowPlace& place, ClipBodies& bodies) {
-  Stopwatch watch;
-  const Setup setup = read_row(request, wear, clip);
-  ClipBody& body = bodies[setup.scene.cloths.size()];
-  PosedBodies& known = *setup.bodies.front();
+struct WardrobeWork {
+  WardrobeRequest request;
+  std::vector<WardrobeCell> cells;
+  std::vector<std::filesystem::path> files;  // that all rows depend on
+  std::string key;
+  std::string clip;   // of `bodies`
+  ClipBodies bodies;  // that the rows of a clip share
+};
+
+WardrobeWork read_work(const WardrobeRequest& request) {
+  WardrobeWork work{request, {}, {}, {}, {}, {}};
+  const std::filesystem::path outfits = request.configs / "outfits.yaml", clips = request.configs / "clips.yaml";
+  const std::vector<Wear> wears = chosen(everything(read_wardrobe(outfits)), request.wear, "garment or outfit");
+  const std::vector<ClipEntry> all_clips = chosen(read_clip_split(clips), request.clips, "clip");
+  for (const ClipEntry& clip : all_clips)
+    for (const Wear& wear : wears) work.cells.push_back({wear, clip, clip.name == all_clips.front().name});
+  work.files = {outfits, clips, request.configs / "wardrobe" / "garment.yaml",
+                request.configs / "wardrobe" / "outfit.yaml"};
+  std::string settings;
+  for (const std::filesystem::path& file : work.files) settings += whole_file(file);
+  work.key = fmt::format("{:016x} {}", hash_of(settings), request.most_frames);
+  return work;
+}
+
+// Soft tissue comes from the rows of this clip before, or from the store on disk where another process left it.
+void share_body(const Setup& setup, PosedBodies& known, ClipBody& body) {
+  if (!body.known.store) {
+    read_tissue(cache_folder(), setup.bodies);
+    body.known.performance = known.performance;
+    body.known.store = known.store;
+  }
   std::swap(known, body.known);
+}
+
+// Absent: stopped before its end.
+std::optional<CellResult> run_row(WardrobeWork& work, const WardrobeCell& cell, const std::filesystem::path& folder,
+                                  const CellWatch& watch) {
+  Stopwatch time;
+  if (work.clip != cell.clip.name) work.bodies.clear();
+  work.clip = cell.clip.name;
+  const Setup setup = read_row(work.request, cell.wear, cell.clip);
+  ClipBody& body = work.bodies[setup.scene.cloths.size()];
+  PosedBodies& known = *setup.bodies.front();
+  share_body(setup, known, body);
   find_excused(setup, body);
   const std::vector<char>& excused = body.excused;
   WardrobeRow row;
-  row.wear = wear.name;
-  row.clip = clip.name;
-  row.validation = wear.validation || clip.validation;
+  row.wear = cell.wear.name;
+  row.clip = cell.clip.name;
+  row.validation = cell.wear.validation || cell.clip.validation;
   row.excused_frames = static_cast<int>(std::count(excused.begin(), excused.end(), 1));
   RunRequest run;
-  run.out = place.folder;
+  run.out = folder / "run";
   run.checkpoint_seconds = 1e9;
   run.observe = WardrobeWatch{excused, row};
-  run.stop = request.stop;
-  const std::optional<Start> start = prepare(setup, request.stop);
+  run.stop = watch.stop;
+  const std::optional<Start> start = prepare(setup, watch.stop);
   if (!start) return {};
   const RunSummary summary = run_scene(setup, *start, *make_stepper(setup), run);
+  keep_tissue(setup, watch.log);
   std::swap(known, body.known);
   if (summary.end == RunEnd::interrupted) return {};
   row.vertices = summary.vertices;
@@ -151,8 +195,9 @@ std::optional<WardrobeRow> run_row(const WardrobeRequest& request, const Wear& w
   row.milliseconds = median_milliseconds(summary);
   row.max_stretch = summary.max_stretch;
   row.failures = failures_of(row, summary, excused);
-  row.seconds = watch.lap();
-  return row;
+  row.seconds = time.lap();
+  keep_or_remove(run.out, !row.passed() || cell.shown, watch.log);
+  return CellResult{wardrobe_row_json(row), row.passed(), summary.positions_hash};
 }
 
 std::string log_line(const WardrobeRow& row) {
@@ -163,41 +208,72 @@ std::string log_line(const WardrobeRow& row) {
   return line;
 }
 
+// Rows come clip by clip; tables have them by what is worn.
+CellTables write_tables(const WardrobeWork& work, const std::filesystem::path& out, std::vector<WardrobeRow>& rows) {
+  std::ranges::stable_sort(rows, {}, [&](const WardrobeRow& row) {
+    return std::ranges::find(work.cells, row.wear, [](const WardrobeCell& cell) { return cell.wear.name; });
+  });
+  const CellTables tables{wardrobe_table(rows), wardrobe_json(rows), std::ranges::all_of(rows, &WardrobeRow::passed)};
+  write_file(out / "wardrobe.json", tables.json);
+  write_file(out / "wardrobe.csv", wardrobe_csv(rows));
+  write_file(out / "wardrobe.txt", tables.text);
+  return tables;
+}
+
+void show_run(const std::filesystem::path& out, const WardrobeRow& row, const std::string& cell) {
+  show_result(cell_folder(out, cell) / "run", out / row.wear / row.clip);
+}
+
+CellTables gather_rows(const WardrobeWork& work, const std::vector<CellRecord>& records,
+                       const std::filesystem::path& out) {
+  std::vector<WardrobeRow> rows;
+  for (const CellRecord& record : records)
+    if (const std::optional<WardrobeRow> row = read_wardrobe_row(record.result.row)) {
+      rows.push_back(*row);
+      show_run(out, *row, record.cell);
+    }
+  return write_tables(work, out, rows);
+}
+
+CellList list_of(const std::shared_ptr<WardrobeWork>& work) {
+  CellList list;
+  list.kind = "wardrobe";
+  list.program = program_key();
+  for (const WardrobeCell& cell : work->cells) list.names.push_back(cell.name());
+  list.describe = [work](std::size_t k) {
+    const WardrobeCell& cell = work->cells[k];
+    constexpr double frame = 0.11;  // mean of docs/garments/wardrobe.csv [s]
+    const int frames = work->request.most_frames > 0 ? work->request.most_frames : cell.clip.frames;
+    return Cell{cell.name(), work->files, frame * (30 + frames)};
+  };
+  list.key = [work](std::size_t) { return work->key; };
+  list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {
+    return run_row(*work, work->cells[k], folder, watch);
+  };
+  list.gather = [work](const std::vector<CellRecord>& records, const std::filesystem::path& out) {
+    return gather_rows(*work, records, out);
+  };
+  return list;
+}
+
 }  // namespace
 
+CellList wardrobe_cells(const WardrobeRequest& request) {
+  return list_of(std::make_shared<WardrobeWork>(read_work(request)));
+}
+
 std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
-  const std::filesystem::path outfits = request.configs / "outfits.yaml", clips = request.configs / "clips.yaml";
-  const std::vector<Wear> wears = chosen(everything(read_wardrobe(outfits)), request.wear, "garment or outfit");
-  const std::vector<ClipEntry> all_clips = chosen(read_clip_split(clips), request.clips, "clip");
-  make_folder(request.out);
-  const std::string settings = whole_file(outfits) + whole_file(clips) +
-                               whole_file(request.configs / "wardrobe" / "garment.yaml") +
-                               whole_file(request.configs / "wardrobe" / "outfit.yaml");
-  const std::string key = fmt::format("{} {:016x} {}", program_key(), hash_of(settings), request.most_frames);
+  const auto work = std::make_shared<WardrobeWork>(read_work(request));
   std::vector<WardrobeRow> rows;
-  for (std::size_t c = 0; c < all_clips.size(); ++c) {
-    if (static_cast<int>(c) % request.share[1] != request.share[0] - 1) continue;
-    const ClipEntry& clip = all_clips[c];
-    ClipBodies bodies;
-    for (const Wear& wear : wears) {
-      const RowPlace place{request.out / wear.name / clip.name, request.out / wear.name / (clip.name + ".json"), key};
-      make_folder(place.folder.parent_path());
-      std::optional<WardrobeRow> row = read_wardrobe_row(whole_file(place.file), key);
-      if (!row) {
-        row = run_row(request, wear, clip, place, bodies);
-        if (!row) return rows;
-        keep_or_remove(place.folder, !row->passed() || clip.name == all_clips.front().name, request.log);
-        write_file(place.file, wardrobe_row_json(*row, key));
-      }
-      rows.push_back(*row);
-      if (request.log) *request.log << log_line(*row) << std::flush;
-    }
-  }
-  const auto order = [&](const WardrobeRow& row) { return std::ranges::find(wears, row.wear, &Wear::name); };
-  std::ranges::stable_sort(rows, {}, order);
-  write_file(request.out / "wardrobe.json", wardrobe_json(rows));
-  write_file(request.out / "wardrobe.csv", wardrobe_csv(rows));
-  write_file(request.out / "wardrobe.txt", wardrobe_table(rows));
+  const bool finished = do_cells(list_of(work), request.out, {request.log, request.stop}, [&](const DoneCell& done) {
+    std::optional<WardrobeRow> row = read_wardrobe_row(done.record.result.row);
+    if (!row) return;
+    row->kept = done.kept;
+    show_run(request.out, *row, done.record.cell);
+    if (request.log) *request.log << log_line(*row) << std::flush;
+    rows.push_back(std::move(*row));
+  });
+  if (finished) write_tables(*work, request.out, rows);
   return rows;
 }
 

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include "pipeline/cells/cell_list.hpp"
 
 namespace selvedge {
 
@@ -15,7 +16,6 @@ struct WardrobeRequest {
   std::vector<std::string> wear;              // garments and outfits; empty: all
   std::vector<std::string> clips;             // empty: all
   int most_frames = 0;                        // of a clip; 0: all
-  std::array<int, 2> share{1, 1};             // which part of the clips, of how many: for several processes at once
   std::filesystem::path out = "out/wardrobe";
   std::ostream* log = nullptr;  // a line as each row ends
   std::function<bool()> stop;   // asked after every frame; true ends the command, an unfinished row is not kept
@@ -42,13 +42,17 @@ struct WardrobeRow {
 // Dresses the mannequin in each garment and small outfit by code and takes it through each procedural clip, from its
 // zero pose on. Passes: to the end without a rejected step, every garment still on the body (worn_part.hpp); no
 // intersecting pair of cloth in any frame; and, in frames
-// that are not excused, none with the body, no obstacle lag, and no vertex deeper than 1 mm. A row that finished is not
-// run again by the same program and settings. Leaves in `out` wardrobe.json, .csv and .txt, and the trajectory and page
-// of each row that failed and of each garment's first clip.
+// that are not excused, none with the body, no obstacle lag, and no vertex deeper than 1 mm. A row is a cell, and one
+// that finished is not run again by the same program and settings. Leaves in `out` wardrobe.json, .csv and .txt, the
+// cells, and as WEAR/CLIP the trajectory and page of each row that failed and of each garment's first clip.
 std::vector<WardrobeRow> wardrobe(const WardrobeRequest&);
 
-std::string wardrobe_row_json(const WardrobeRow&, const std::string& key);
-std::optional<WardrobeRow> read_wardrobe_row(const std::string& json, const std::string& key);
+// The cells WEAR.CLIP, clip by clip: rows of a clip in one process share its bodies. `out`, `log` and `stop` of the
+// request have no part in them.
+CellList wardrobe_cells(const WardrobeRequest&);
+
+std::string wardrobe_row_json(const WardrobeRow&);
+std::optional<WardrobeRow> read_wardrobe_row(const std::string& json);
 std::string wardrobe_json(const std::vector<WardrobeRow>&);
 std::string wardrobe_csv(const std::vector<WardrobeRow>&);
 std::string wardrobe_table(const std::vector<WardrobeRow>&);  // a row a garment or outfit, and the sum, for people

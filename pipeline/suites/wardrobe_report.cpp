@@ -37,15 +37,11 @@ Json wardrobe_to_json(const WardrobeRow& row) { return row_to_json(row, wardrobe
 
 }  // namespace
 
-std::string wardrobe_row_json(const WardrobeRow& row, const std::string& key) {
-  return kept_row_json(wardrobe_to_json(row), key);
-}
+std::string wardrobe_row_json(const WardrobeRow& row) { return json_text(wardrobe_to_json(row)); }
 
-std::optional<WardrobeRow> read_wardrobe_row(const std::string& text, const std::string& key) {
-  return read_kept_row<WardrobeRow>(text, key, [](const Json& json, WardrobeRow& row) {
-    row_from_json(json, wardrobe_fields, row);
-    row.kept = true;
-  });
+std::optional<WardrobeRow> read_wardrobe_row(const std::string& text) {
+  return read_row<WardrobeRow>(text,
+                               [](const Json& json, WardrobeRow& row) { row_from_json(json, wardrobe_fields, row); });
 }
 
 std::string wardrobe_json(const std::vector<WardrobeRow>& rows) {

@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/cells/do_cells.hpp"
 #include "pipeline/compare/algebraic_error.hpp"
 #include "pipeline/compare/compare_reference.hpp"
+#include "pipeline/host/machine_name.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/source_root.hpp"
 
@@ -178,6 +180,53 @@ TEST_CASE("A comparison measures errors, times and energy, and is not done twice
   const CompareResult brief = compare(request);
   CHECK(brief.floors[0].frames == 4);
   CHECK(brief.rows[0].temporal != coarse.temporal);
+}
+
+TEST_CASE("A comparison by cells comes to the same as the command", "[compare][cells]") {
+  const Folder folder("compare_cells");
+  CompareRequest request = small_request(folder,
+                                         "scenes:\n"
+                                         "  - {file: hanging.yaml, states: 2, horizon: 3}\n"
+                                         "  - {file: hanging.yaml, name: a way down, states: 0}\n" +
+                                             comparing.substr(comparing.find("repeats")));
+  const CellList list = compare_cells(request);
+  CHECK(list.names == std::vector<std::string>{"hanging", "a_way_down"});
+  CHECK(list.describe(0).seconds > list.describe(1).seconds);
+  const std::filesystem::path out = folder.path / "cells";
+  REQUIRE(do_cell(compare_cells(request), 1, out, {}));
+  CHECK(gather_cells(compare_cells(request), out).missing == std::vector<std::string>{"hanging"});
+  CHECK_THAT(fake::whole(out / "compare.txt"), !Contains("hanging:") && Contains("a way down:"));
+  REQUIRE(do_cell(compare_cells(request), 0, out, {}));
+  const GatheredCells gathered = gather_cells(compare_cells(request), out);
+  REQUIRE(gathered.complete());
+  const CompareResult result = compare(request);
+  const auto json = nlohmann::json::parse(gathered.tables.json), other = nlohmann::json::parse(compare_json(result));
+  CHECK(json["scenes"] == other["scenes"]);
+  REQUIRE(json["rows"].size() == 6);
+  for (std::size_t k = 0; k < 6; ++k) {
+    INFO(k);
+    for (const char* column : {"scene", "setting", "temporal", "algebraic", "ranked", "decay", "newton", "pairs"})
+      CHECK(json["rows"][k][column] == other["rows"][k][column]);
+    CHECK(json["rows"][k]["ms"] > 0);
+    CHECK(json["rows"][k]["machine"] == machine_name());
+  }
+  for (std::size_t k = 0; k < 2; ++k)
+    CHECK(find_cell(list, k, out).record.result.positions == find_cell(list, k, request.out).record.result.positions);
+  for (const char* name : {"compare.csv", "compare.html", "compare.h5"}) CHECK(std::filesystem::exists(out / name));
+}
+
+TEST_CASE("Where scenes were timed on several machines, the table says on which", "[compare][cells]") {
+  CompareResult result;
+  for (const char* scene : {"one", "two"}) {
+    result.floors.emplace_back().scene = scene;
+    result.rows.push_back(row(1, 2));
+    result.rows.back().scene = scene;
+    result.rows.back().machine = "here";
+  }
+  CHECK_THAT(compare_table(result), !Contains("timed on"));
+  result.rows[1].machine = "there";
+  CHECK_THAT(compare_table(result), Contains("timed on here") && Contains("timed on there"));
+  CHECK_THAT(compare_csv(result), Contains(",machine\n") && Contains("\"there\""));
 }
 
 TEST_CASE("A comparison that is stopped anywhere goes on and comes to the same", "[compare]") {

@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/cells/do_cells.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/compare/compare_run.hpp"
 #include "pipeline/host/gnuplot.hpp"
@@ -54,7 +55,7 @@ TEST_CASE("compare: the short suite takes all kinds of steppers, and says what i
   const std::string page = fake::whole(folder.path / "compare.html");
   CHECK_THAT(page, Contains("<svg") && Contains("What was left out") && Contains("no weight file"));
   CHECK_THAT(fake::whole(folder.path / "compare.csv"), Contains(",grad_norm,"));
-  CHECK_THAT(trouble_of_bare_run(folder.path / "parts" / "hang" / "row_0.h5"), Contains("made by `conventional`"));
+  CHECK_THAT(trouble_of_bare_run(cell_folder(folder.path, "hang") / "row_0.h5"), Contains("made by `conventional`"));
 }
 
 TEST_CASE("compare: a bare run is pushed out of a body in the frame alone in which it settles", "[compare]") {
@@ -187,7 +188,7 @@ TEST_CASE("compare: the limit of time holds for a row's frames from the common s
   const CompareRow row = row_named(compare(request), "conventional");
   CHECK(std::isnan(row.temporal));
   CHECK(row.floor > 0);  // references have no limit
-  CHECK_THAT(fake::whole(folder.path / "parts" / "hang" / "errors_0.json"),
+  CHECK_THAT(fake::whole(cell_folder(folder.path, "hang") / "errors_0.json"),
              Contains("from a common state: ended by `limits` after frame 0 of 2"));
 }
 

@@ -55,6 +55,26 @@ TEST_CASE("evaluation: a bootstrap interval of two values by hand", "[evaluation
   CHECK(ratio.high == Approx(4));
 }
 
+TEST_CASE("evaluation: speeds are of the machine that has timed most sequences", "[evaluation][cells]") {
+  Comparison comparison;
+  comparison.settings.push_back({"conventional", {}, {}, {}});
+  comparison.evaluation.baseline = "conventional";
+  std::vector<CompareRow> rows;
+  for (const char* scene : {"a", "b", "c"}) rows.push_back(sequence(scene, "conventional", {0, 0}, false));
+  rows[0].machine = "slow";
+  rows[0].ms = 1000;
+  rows[1].machine = rows[2].machine = "quick";
+  const Evaluation found = evaluated(comparison, {}, rows);
+  CHECK(found.machine == "quick");
+  CHECK(found.timed_elsewhere == 1);
+  CHECK(found.rows.at(0).frames_a_second == Approx(100));
+  CHECK(found.rows.at(0).sequences == 3);  // of everything but times
+  CHECK(found.speeds.at(0).second.at(0).second == Approx(100));
+  CHECK(evaluation_text(found).find("are of quick; times of 1 sequences") != std::string::npos);
+  rows[0].machine = "quick";
+  CHECK(evaluation_text(evaluated(comparison, {}, rows)).find("quick") == std::string::npos);
+}
+
 TEST_CASE("evaluation: tables by hand", "[evaluation]") {
   Comparison comparison;
   for (const char* name : {"conventional", "hood", "absent"}) comparison.settings.push_back({name, {}, {}, {}});

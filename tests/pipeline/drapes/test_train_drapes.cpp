@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/cells/do_cells.hpp"
 #include "pipeline/drapes/drape_run.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
@@ -31,6 +32,25 @@ TrainRequest tiny_run(const Folder& folder, const std::string& out) {
 }
 
 }  // namespace
+
+TEST_CASE("drapes: a set by cells has the bits of the command's", "[drapes][cells]") {
+  const Folder folder("drape_cells");
+  DatasetRequest request = tiny_data(folder);
+  const CellList list = dataset_cells(request);
+  CHECK(list.names == std::vector<std::string>{"path_0000", "path_0001", "path_0002", "path_0003"});
+  const std::filesystem::path out = folder.path / "cells";
+  for (const std::size_t k : {3, 0, 1}) REQUIRE(do_cell(dataset_cells(request), k, out, {}));
+  CHECK(gather_cells(list, out).missing == std::vector<std::string>{"path_0002"});
+  CHECK_THROWS_AS(read_drape_set(out), Error);
+  REQUIRE(do_cell(list, 2, out, {}));
+  CHECK(gather_cells(list, out).complete());
+  REQUIRE(make_dataset(request).finished);
+  const DrapeSet cells = read_drape_set(out), command = read_drape_set(request.out);
+  REQUIRE(cells.training.size() == command.training.size());
+  for (std::size_t k = 0; k < cells.training.size(); ++k) CHECK(cells.training[k].x == command.training[k].x);
+  CHECK(fake::whole(out / "config.yaml") == fake::whole(request.out / "config.yaml"));
+  CHECK(std::filesystem::exists(out / "drapes.csv"));
+}
 
 TEST_CASE("drapes: from a simulated set to the table, stopped and resumed on the way", "[drapes]") {
   const Folder folder("train_drapes");
