@@ -11,8 +11,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
-#include "pipeline/config/config_units.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/config/config_units.hpp"
 #include "pipeline/exports/driven_mesh.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
@@ -142,9 +142,13 @@ class RunSurfaces {
       return;
     }
     const std::vector<int> rows = rows_of(c);
+    const int own = info().cloth_first_vertex[c + 1] - first_of(c);
     cloth.surface.vertex_count = static_cast<int>(rows.size());
-    cloth.surface.triangles = triangles_of(c).unaryExpr(
-        [&](int v) { return static_cast<int>(std::ranges::lower_bound(rows, v) - rows.begin()); });
+    cloth.surface.triangles = triangles_of(c).unaryExpr([&](int v) {
+      const bool others = v < first_of(c) || v >= first_of(c) + own;
+      return others ? static_cast<int>(std::lower_bound(rows.begin() + own, rows.end(), v) - rows.begin())
+                    : v - first_of(c);
+    });
     cloth.positions = rows_of_run(rows);
   }
 

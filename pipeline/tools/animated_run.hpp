@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "pipeline/exports/export_formats.hpp"
 
 namespace selvedge {
