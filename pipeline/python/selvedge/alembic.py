@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import os
 import pathlib
 import tempfile
@@ -99,9 +100,10 @@ def export_alembic(run: str | os.PathLike[str], file: str | os.PathLike[str], *,
     meshes: list[_Written] = []
     surfaces = read_surfaces(run, obstacles)
     for surface in surfaces:
-        name = plain = surface["name"].replace("/", "_") or "_"
-        while any(mesh.name == name for mesh in meshes):
-            name = f"{plain}_{sum(mesh.name.startswith(plain) for mesh in meshes)}"
+        plain = surface["name"].replace("/", "_") or "_"
+        taken = {mesh.name for mesh in meshes}
+        names = itertools.chain([plain], (f"{plain}_{k}" for k in itertools.count(1)))
+        name = next(one for one in names if one not in taken)
         ends = np.cumsum(surface["counts"])[:-1]
         faces = np.split(surface["corners"], ends)
         try:
