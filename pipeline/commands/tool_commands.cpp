@@ -106,6 +106,7 @@ RunCommand dress_command(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option("--fit", request->fit, "tight: weights of the nearest vertex; loose: averaged")
       ->check(CLI::IsMember({"tight", "loose"}));
+  command.add_flag("--weld", request->weld, "join vertices at one place, as along seams of textures");
   command.add_option("--pin", request->pins, "group that stays with the body, or none; may be given again")
       ->allow_extra_args(false);
   return [request](bool json) {
@@ -191,9 +192,14 @@ RunCommand export_command(CLI::App& command) {
   command.add_option("--format", request->format, export_format_list());
   command.add_option("--out", request->out, "folder")->default_val("export");
   command.add_flag("--obstacles", request->obstacles, "also the obstacles");
+  command.add_option("--onto", request->onto,
+                     "a mesh of your own, at the cloth's rest shape, that it moves (.obj, .ply)");
+  command.add_option("--onto-unit", request->onto_unit, "of that mesh: m, dm, cm, mm");
+  command.add_option("--cloth", request->cloth, "the cloth that moves it; without it all do");
   return [request](bool json) {
     Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
     ExportRequest shown = *request;
+    shown.warn = [](const std::string& warning) { std::cerr << "warning: " << warning << "\n"; };
     shown.progress = [&](int done, int all) {
       if (done == 1) progress.begin(0, all);
       progress.frame(done);

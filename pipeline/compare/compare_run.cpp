@@ -44,7 +44,9 @@ struct RunWatch {
     const Drive drive = setup.drive_at(start.time);
     if (options.measured) begin_measures(options, start, drive);
     if (options.trajectory.empty()) return;
-    writer.emplace(options.trajectory, trajectory_info(setup.scene, setup.config, stepper.name, setup.run.fps));
+    TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.name, setup.run.fps);
+    info.looks = setup.looks;
+    writer.emplace(options.trajectory, info);
     writer->append(record_initial(setup.scene, terms, start, drive));
   }
 

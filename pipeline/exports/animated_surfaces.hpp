@@ -15,6 +15,9 @@ struct AnimatedSurface {
   int vertex_count = 0;
   bool cloth = true, moving = true;          // what never moves has the positions of frame 0
   Eigen::Vector3d colour = {0.7, 0.7, 0.7};  // linear, 0 to 1
+  std::string file = {};                     // with which the names of its own files begin
+  Look look = {};                            // of the file that it came from, whose vertices these are; may be empty
+  Triangles cut = {};                        // with a look: the triangles, as indices of its corners
 };
 
 // A run as formats for other programs write it: frame i is at time i / fps.

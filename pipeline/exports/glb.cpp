@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/exports/export_formats.hpp"
+#include "pipeline/exports/glb_look_json.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
@@ -73,17 +74,16 @@ struct Chunk {
   }
 };
 
-int put_corners(Chunk& chunk, const AnimatedSurface& surface) {
+int put_corners(Chunk& chunk, const AnimatedSurface& surface, const std::vector<int>& triangles) {
   const std::size_t begin = chunk.bytes.size();
   const bool few = surface.vertex_count < 65535;
-  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) {
-    const int corner = surface.triangles.data()[i];
-    few ? chunk.put(static_cast<std::uint16_t>(corner)) : chunk.put(static_cast<std::uint32_t>(corner));
-  }
+  for (const int t : triangles)
+    for (const int corner : surface.triangles.row(t))
+      few ? chunk.put(static_cast<std::uint16_t>(corner)) : chunk.put(static_cast<std::uint32_t>(corner));
   const int view = chunk.view(begin, {{"target", index_data}});
   return chunk.accessor({{"bufferView", view},
                          {"componentType", few ? unsigned_short : unsigned_int},
-                         {"count", surface.triangles.size()},
+                         {"count", 3 * triangles.size()},
                          {"type", "SCALAR"}});
 }
 
@@ -92,7 +92,21 @@ struct Track {
   Levels middle;
   std::string bytes;  // of the middle, then of every frame: x y z and two bytes that bring a vertex to eight
   Json accessors = Json::array();
+  PointsF first_normals;             // without rows: there are none
+  std::vector<std::string> normals;  // those of frame 0, then what every frame adds to them: three floats a vertex
 
+  // x: the positions in a frame; those of the first call are the mesh's own.
+  void put_normals(const Look& look, const SplitVertices& split, const PointsF& x, bool as_target) {
+    if (split.slots.count == 0) return;
+    const PointsF all = gltf_normals(look, split, x);
+    if (normals.empty()) {
+      first_normals = all;
+      normals.emplace_back(reinterpret_cast<const char*>(all.data()), static_cast<std::size_t>(all.size()) * 4);
+    }
+    if (!as_target) return;
+    const PointsF added = all - first_normals;
+    normals.emplace_back(reinterpret_cast<const char*>(added.data()), static_cast<std::size_t>(added.size()) * 4);
+  }
   void put(const Levels& values, bool middle_itself) {
     const std::size_t begin = bytes.size();
     for (Eigen::Index i = 0; i < values.rows(); ++i)
@@ -110,23 +124,54 @@ struct Track {
   }
 };
 
-std::vector<Track> tracks_of(const AnimatedSurfaces& run, const std::vector<Ranges>& ranges) {
+std::vector<Track> tracks_of(const AnimatedSurfaces& run, const std::vector<Ranges>& ranges,
+                             const std::vector<SplitVertices>& splits) {
   std::vector<Track> tracks(run.surfaces.size());
   for (std::size_t s = 0; s < tracks.size(); ++s) {
     const Levels low = levels_of(ranges[s], ranges[s].low), high = levels_of(ranges[s], ranges[s].high);
     tracks[s].middle = ((low + high).array() / 2).matrix();
     tracks[s].put(tracks[s].middle, true);
+    if (ranges[s].low == ranges[s].high) tracks[s].put_normals(run.surfaces[s].look, splits[s], ranges[s].low, false);
   }
   const bool any_moves = std::ranges::any_of(ranges, [](const Ranges& r) { return r.low != r.high; });
   for (int i = 0; any_moves && i < run.frame_count; ++i) {
     const std::vector<PointsF> x = run.frame(i);
-    for (std::size_t s = 0; s < tracks.size(); ++s)
-      if (ranges[s].low != ranges[s].high) tracks[s].put(levels_of(ranges[s], x[s]) - tracks[s].middle, false);
+    for (std::size_t s = 0; s < tracks.size(); ++s) {
+      if (ranges[s].low == ranges[s].high) continue;
+      tracks[s].put(levels_of(ranges[s], x[s]) - tracks[s].middle, false);
+      tracks[s].put_normals(run.surfaces[s].look, splits[s], x[s], true);
+    }
   }
   return tracks;
 }
 
-Json mesh_of(Chunk& chunk, const AnimatedSurface& surface, Track& track, int material) {
+// Floats of so many rows as an attribute.
+int put_floats(Chunk& chunk, const std::string& floats, Eigen::Index rows, const char* type) {
+  const std::size_t begin = chunk.bytes.size();
+  chunk.bytes += floats;
+  const int view = chunk.view(begin, {{"target", vertex_data}});
+  return chunk.accessor({{"bufferView", view}, {"componentType", real}, {"count", rows}, {"type", type}});
+}
+
+// Texture coordinates, and normals with a target a frame.
+void put_look(Chunk& chunk, const Look& look, const SplitVertices& split, Track& track, Json& attributes,
+              Json& targets) {
+  if (!look.corner_uv.empty()) {
+    const auto uv = gltf_uv(look, split);
+    const std::string floats(reinterpret_cast<const char*>(uv.data()), static_cast<std::size_t>(uv.size()) * 4);
+    attributes["TEXCOORD_0"] = put_floats(chunk, floats, uv.rows(), "VEC2");
+  }
+  for (std::size_t k = 0; k < track.normals.size(); ++k)
+    (k == 0 ? attributes : targets[k - 1])["NORMAL"] =
+        put_floats(chunk, track.normals[k], track.first_normals.rows(), "VEC3");
+  track.normals = {};
+}
+
+// A mesh with a primitive a part and material. material: the number in the file of a material of the look, or of the
+// surface's own for -1.
+template <class MaterialNumber>
+Json mesh_of(Chunk& chunk, const AnimatedSurface& surface, const SplitVertices& split, Track& track,
+             const MaterialNumber& material) {
   const std::size_t begin = chunk.bytes.size();
   chunk.bytes += track.bytes;
   track.bytes = {};
@@ -136,18 +181,24 @@ Json mesh_of(Chunk& chunk, const AnimatedSurface& surface, Track& track, int mat
     description["bufferView"] = view;
     numbers.push_back(chunk.accessor(description));
   }
-  Json primitive = {
-      {"attributes", {{"POSITION", numbers[0]}}}, {"indices", put_corners(chunk, surface)}, {"material", material}};
+  Json attributes = {{"POSITION", numbers[0]}}, targets = Json::array();
+  for (std::size_t k = 1; k < numbers.size(); ++k) targets.push_back({{"POSITION", numbers[k]}});
+  put_look(chunk, surface.look, split, track, attributes, targets);
   Json mesh = {{"name", surface.name}};
   if (numbers.size() > 1) {
     Json weights = Json::array({1});
-    for (std::size_t k = 1; k < numbers.size(); ++k) {
-      primitive["targets"].push_back({{"POSITION", numbers[k]}});
-      if (k > 1) weights.push_back(0);
-    }
+    for (std::size_t k = 2; k < numbers.size(); ++k) weights.push_back(0);
     mesh["weights"] = weights;  // without animation: frame 0
   }
-  mesh["primitives"] = Json::array({primitive});
+  mesh["primitives"] = Json::array();
+  for (const GltfPrimitive& one : primitives_of(surface)) {
+    Json primitive = {{"attributes", attributes},
+                      {"indices", put_corners(chunk, surface, one.triangles)},
+                      {"material", material(one.material)}};
+    if (!targets.empty()) primitive["targets"] = targets;
+    if (const Json extras = part_extras(surface.look, one.part); !extras.empty()) primitive["extras"] = extras;
+    mesh["primitives"].push_back(primitive);
+  }
   return mesh;
 }
 
@@ -186,7 +237,9 @@ Json material_of(const AnimatedSurface& surface) {
 void check_size(const std::filesystem::path& path, const AnimatedSurfaces& run) {
   double bytes = 1.0 * run.frame_count * run.frame_count;
   for (const AnimatedSurface& surface : run.surfaces)
-    bytes += 8.0 * surface.vertex_count * (run.frame_count + 1) + 4.0 * static_cast<double>(surface.triangles.size());
+    bytes += (surface.look.corner_normal.empty() ? 8.0 : 20.0) * surface.vertex_count * (run.frame_count + 1) +
+             (surface.look.corner_uv.empty() ? 0.0 : 8.0) * surface.vertex_count +
+             4.0 * static_cast<double>(surface.triangles.size());
   if (bytes > 4.0e9)
     throw Error("would be larger than the 4 GiB that the format allows", path.string(),
                 "export fewer frames or without --obstacles, or to usda, pc2 or mdd");
@@ -208,20 +261,33 @@ void write_chunks(const std::filesystem::path& path, std::string text, const std
 
 }  // namespace
 
-std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& run, const ExportRequest& request) {
+std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& given, const ExportRequest& request) {
   const std::filesystem::path path = request.one_file();
+  std::vector<SplitVertices> splits;
+  const AnimatedSurfaces run = split_vertices(given, splits);
   check_size(path, run);
   const std::vector<Ranges> ranges = ranges_of(run);
-  std::vector<Track> tracks = tracks_of(run, ranges);
+  std::vector<Track> tracks = tracks_of(run, ranges, splits);
   Chunk chunk;
   Json meshes = Json::array(), nodes = Json::array(), materials = Json::array(), roots = Json::array();
   std::vector<int> moving;
+  Json tables = Json::object();
+  const ExportMaterials looks = export_materials(run.surfaces);
+  put_materials(looks, materials, tables);
   for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
     const int number = static_cast<int>(s);
     const Eigen::RowVector3d& o = ranges[s].origin;
     if (tracks[s].accessors.size() > 1) moving.push_back(number);
-    meshes.push_back(mesh_of(chunk, run.surfaces[s], tracks[s], number));
-    materials.push_back(material_of(run.surfaces[s]));
+    int by_default = -1;
+    const auto material = [&](int of_look) {
+      if (of_look >= 0) return looks.of[s][static_cast<std::size_t>(of_look)];
+      if (by_default < 0) {
+        by_default = static_cast<int>(materials.size());
+        materials.push_back(material_of(run.surfaces[s]));
+      }
+      return by_default;
+    };
+    meshes.push_back(mesh_of(chunk, run.surfaces[s], splits[s], tracks[s], material));
     nodes.push_back({{"name", run.surfaces[s].name},
                      {"mesh", number},
                      {"translation", {o[0], o[1], o[2]}},
@@ -237,6 +303,7 @@ std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& run, const
               {"nodes", nodes},
               {"meshes", meshes},
               {"materials", materials}};
+  all.update(tables);
   if (!moving.empty()) all["animations"] = Json::array({animation_of(chunk, run, moving)});
   all["bufferViews"] = chunk.views;
   all["accessors"] = chunk.accessors;

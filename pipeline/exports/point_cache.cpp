@@ -6,8 +6,9 @@
 #include <cstring>
 
 #include "pipeline/exports/export_formats.hpp"
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/exports/obj_objects.hpp"
 #include "pipeline/host/growing_file.hpp"
+#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -64,10 +65,19 @@ void write_mdd(const std::filesystem::path& path, const AnimatedSurfaces& run, s
 std::vector<std::filesystem::path> export_point_caches(const AnimatedSurfaces& run, const ExportRequest& request) {
   const auto write = request.format == "pc2" ? write_pc2 : write_mdd;
   std::vector<std::filesystem::path> written;
+  const std::vector<PointsF> first = run.frame(0);
   for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
-    written.push_back(request.file(run.surfaces[s].name + ".obj"));
-    write_obj(written.back(), run.frame(0)[s].cast<double>(), run.surfaces[s].triangles);
-    written.push_back(request.file(run.surfaces[s].name + "." + request.format));
+    const AnimatedSurface& surface = run.surfaces[s];
+    const std::string materials = objects_materials({&surface, 1});
+    if (!materials.empty()) {
+      written.push_back(request.file(surface.file + ".mtl"));
+      write_file(written.back(), materials);
+    }
+    written.push_back(request.file(surface.file + ".obj"));
+    write_file(written.back(),
+               objects_text({&surface, 1}, {&first[s], 1}, materials.empty() ? "" : surface.file + ".mtl"));
+    if (!surface.moving) continue;
+    written.push_back(request.file(surface.file + "." + request.format));
     write(written.back(), run, s);
   }
   return written;

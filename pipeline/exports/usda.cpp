@@ -1,38 +1,13 @@
 #include <fmt/format.h>
 
-#include <cctype>
 #include <iterator>
-#include <set>
 
 #include "pipeline/exports/export_formats.hpp"
+#include "pipeline/exports/usda_look.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
 namespace {
-
-// Letters, digits and underscores, none of them twice among the surfaces.
-std::vector<std::string> prim_names(const std::vector<AnimatedSurface>& surfaces) {
-  std::set<std::string> taken;
-  std::vector<std::string> names;
-  for (const AnimatedSurface& surface : surfaces) {
-    std::string name = surface.name;
-    for (char& c : name)
-      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0]))) name = "_" + name;
-    std::string free = name;
-    for (int k = 1; !taken.insert(free).second; ++k) free = fmt::format("{}_{}", name, k);
-    names.push_back(free);
-  }
-  return names;
-}
-
-void put_usd_points(std::string& text, const PointsF& x) {
-  text += '[';
-  for (Eigen::Index i = 0; i < x.rows(); ++i)
-    fmt::format_to(std::back_inserter(text), "{}({:.6f}, {:.6f}, {:.6f})", i > 0 ? ", " : "", x(i, 0), x(i, 1),
-                   x(i, 2));
-  text += ']';
-}
 
 std::string extent_text(const PointsF& x) {
   const Eigen::RowVector3f low = x.colwise().minCoeff(), high = x.colwise().maxCoeff();
@@ -50,13 +25,18 @@ std::string topology_text(const Triangles& triangles) {
   return "        int[] faceVertexCounts = [" + counts + "]\n        int[] faceVertexIndices = [" + corners + "]\n";
 }
 
+// The schemas of a mesh.
+std::string schemas_of(const AnimatedSurface& surface) {
+  std::string schemas = surface.cloth ? "\"PhysicsDeformableBodyAPI\", \"PhysicsSurfaceDeformableSimAPI\", " : "";
+  return schemas + "\"PhysicsCollisionAPI\"" + (surface.look.materials.empty() ? "" : ", \"MaterialBindingAPI\"");
+}
+
 std::string prim_head(const AnimatedSurface& surface, const std::string& name) {
   return fmt::format(
-      "    def Mesh \"{}\" (\n        prepend apiSchemas = [{}\"PhysicsCollisionAPI\"]\n    )\n    {{\n"
+      "    def Mesh \"{}\" (\n        prepend apiSchemas = [{}]\n    )\n    {{\n"
       "        uniform token subdivisionScheme = \"none\"\n        uniform bool doubleSided = 1\n"
       "        color3f[] primvars:displayColor = [({:.3f}, {:.3f}, {:.3f})]\n",
-      name, surface.cloth ? "\"PhysicsDeformableBodyAPI\", \"PhysicsSurfaceDeformableSimAPI\", " : "",
-      surface.colour[0], surface.colour[1], surface.colour[2]);
+      name, schemas_of(surface), surface.colour[0], surface.colour[1], surface.colour[2]);
 }
 
 PointsF finite_positions(const AnimatedSurfaces& run, std::size_t number, int frame) {
@@ -66,9 +46,7 @@ PointsF finite_positions(const AnimatedSurfaces& run, std::size_t number, int fr
 }
 
 void write_still(GrowingFile& file, const PointsF& x) {
-  std::string text = "        point3f[] points = ";
-  put_usd_points(text, x);
-  file.write(text + "\n        float3[] extent = " + extent_text(x) + "\n");
+  file.write("        point3f[] points = [" + usd_rows(x, 6) + "]\n        float3[] extent = " + extent_text(x) + "\n");
 }
 
 void write_samples(GrowingFile& file, const AnimatedSurfaces& run, std::size_t number) {
@@ -76,12 +54,21 @@ void write_samples(GrowingFile& file, const AnimatedSurfaces& run, std::size_t n
   file.write("        point3f[] points.timeSamples = {\n");
   for (int i = 0; i < run.frame_count; ++i) {
     const PointsF x = finite_positions(run, number, i);
-    std::string text = fmt::format("            {}: ", i);
-    put_usd_points(text, x);
-    file.write(text + ",\n");
+    file.write(fmt::format("            {}: [{}],\n", i, usd_rows(x, 6)));
     extents += fmt::format("            {}: {},\n", i, extent_text(x));
   }
   file.write("        }\n        float3[] extent.timeSamples = {\n" + extents + "        }\n");
+}
+
+void write_normals(GrowingFile& file, const AnimatedSurfaces& run, std::size_t number) {
+  const Look& look = run.surfaces[number].look;
+  const NormalSlots slots = normal_slots(look);
+  file.write(usd_normals_text(slots) + "        normal3f[] primvars:normals.timeSamples = {\n");
+  for (int i = 0; i < (run.surfaces[number].moving ? run.frame_count : 1); ++i) {
+    const PointsF normals = moved_normals(look, slots, finite_positions(run, number, i));
+    file.write(fmt::format("            {}: [{}],\n", i, usd_rows(normals, 4)));
+  }
+  file.write("        }\n");
 }
 
 }  // namespace
@@ -94,10 +81,19 @@ std::vector<std::filesystem::path> export_usda(const AnimatedSurfaces& run, cons
                   "    metersPerUnit = 1\n    startTimeCode = 0\n    timeCodesPerSecond = {}\n    upAxis = \"Y\"\n)\n\n"
                   "def Xform \"run\"\n{{\n",
                   run.frame_count - 1, run.fps, run.fps));
-  const std::vector<std::string> names = prim_names(run.surfaces);
+  const ExportMaterials materials = export_materials(run.surfaces);
+  const UsdMaterials made = usd_materials(materials);
+  file.write(made.text);
+  PrimNames names;
+  if (!made.text.empty()) names("Looks");
   for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
-    file.write(prim_head(run.surfaces[s], names[s]) + topology_text(run.surfaces[s].triangles));
-    if (run.surfaces[s].moving)
+    const AnimatedSurface& surface = run.surfaces[s];
+    std::vector<std::string> own;
+    for (const int m : materials.of[s]) own.push_back(made.paths[static_cast<std::size_t>(m)]);
+    file.write(prim_head(surface, names(surface.name)));
+    file.write(surface.look.empty() ? topology_text(surface.triangles) : usd_look_text(surface.look, own));
+    if (!surface.look.corner_normal.empty()) write_normals(file, run, s);
+    if (surface.moving)
       write_samples(file, run, s);
     else
       write_still(file, finite_positions(run, s, 0));

@@ -28,6 +28,7 @@ class Fields {
   Fields(const std::filesystem::path&, FileForm);
 
   [[noreturn]] void fail(const std::string& field, const std::string& what) const;
+  const File& file() const { return file_; }
   bool has(const std::string& field) const { return file_.has(field); }
   std::string text(const std::string& field) const { return file_.read_text(field); }
   std::vector<std::string> texts(const std::string& field) const;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "collision/geometry/points.hpp"
+#include "pipeline/formats/look.hpp"
 
 namespace selvedge {
 
@@ -27,6 +29,8 @@ struct Mesh {
   NamedVertices groups;                                          // OBJ g / o, meshes of glTF
   std::vector<int> corners, corner_begin;  // vertices of the polygons as read, and where each begins; empty: not read
   std::vector<int> welded;  // of each vertex as read: its number after coincident ones were joined; empty: not joined
+  Look look;                // what the file says beyond that
+  std::vector<std::pair<std::filesystem::path, std::string>> material_files;  // OBJ mtllib: the mesh's folder, the name
   std::vector<std::string> warnings;
 };
 

@@ -79,6 +79,9 @@ Mesh read_mesh(const fs::path& path) {
   if (text.empty()) throw Error("is empty", name, "name a mesh file with vertices and faces");
   Mesh mesh = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);
   if (mesh.x.rows() == 0) throw Error("has no vertices", name, "name a mesh file with vertices and faces");
+  if (mesh.look.empty() && mesh.corners.size() != 3 * mesh.corner_begin.size())  // polygons
+    mesh.look = plain_look(static_cast<std::size_t>(mesh.x.rows()), mesh.corners, mesh.corner_begin);
+  for (auto& [folder, file] : mesh.material_files) folder = path.parent_path();
   leave_out_repeated(mesh, name);
   if (mesh.triangles.rows() == 0) throw Error("has no faces", name, "name a mesh file with vertices and faces");
   note_topology(mesh, name);

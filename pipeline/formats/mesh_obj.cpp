@@ -10,6 +10,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
+#include "pipeline/formats/line_words.hpp"
 #include "pipeline/formats/polygon.hpp"
 #include "pipeline/host/bounds.hpp"
 
@@ -17,18 +18,33 @@ namespace selvedge {
 namespace {
 
 struct Corner {
-  int vertex = 0, texture = -1;  // rows; texture -1: none
+  int vertex = 0, texture = -1, normal = -1;  // rows; -1: none
 };
 
 struct Face {
   std::size_t begin = 0, end = 0;  // of its corners, among all
   int line = 0;
+  int part = -1, material = -1;
+};
+
+// Numbers for different values, in the order in which they are first asked for.
+template <class Value>
+struct Numbered {
+  std::map<Value, int> numbers;
+
+  int operator()(const Value& value) { return numbers.emplace(value, static_cast<int>(numbers.size())).first->second; }
+  std::vector<Value> values() const {
+    std::vector<Value> all(numbers.size());
+    for (const auto& [value, number] : numbers) all[static_cast<std::size_t>(number)] = value;
+    return all;
+  }
 };
 
 struct Parser {
   std::string name;
   int line = 0;
   std::vector<double> x, uv;
+  std::vector<std::array<double, 3>> normals;
   std::vector<Corner> corners;
   std::vector<Face> faces;
   std::map<std::string, int> unknown;  // unknown first words of lines, and how often
@@ -36,6 +52,11 @@ struct Parser {
   std::string object;
   std::vector<std::pair<std::string, std::vector<int>>> groups;
   std::map<std::string, std::size_t> group_index;
+  LookPart part;
+  int material = -1;
+  Numbered<LookPart> parts;
+  Numbered<std::string> materials;
+  std::vector<std::string> material_files;
 
   [[noreturn]] void fail(const std::string& what, const std::string& cure) const {
     throw Error(what, fmt::format("{}:{}", name, line), cure);
@@ -43,18 +64,6 @@ struct Parser {
   int vertex_count() const { return static_cast<int>(x.size() / 3); }
   int uv_count() const { return static_cast<int>(uv.size() / 2); }
 };
-
-std::vector<std::string_view> split_words(std::string_view text) {
-  std::vector<std::string_view> words;
-  const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; };
-  for (std::size_t i = 0; i < text.size();) {
-    while (i < text.size() && space(text[i])) ++i;
-    const std::size_t begin = i;
-    while (i < text.size() && !space(text[i])) ++i;
-    if (i > begin) words.push_back(text.substr(begin, i - begin));
-  }
-  return words;
-}
 
 void read_coordinates(Parser& p, const std::vector<std::string_view>& words, std::size_t count,
                       std::vector<double>& into) {
@@ -83,12 +92,27 @@ int read_index(const Parser& p, std::string_view word, int count) {
   return index > 0 ? index - 1 : count + index;
 }
 
+// As read_index, but -1 for what is no index: normals only shade, and files with wrong ones are read all the same.
+int normal_index(const Parser& p, std::string_view word) {
+  int index = 0;
+  std::from_chars(word.data(), word.data() + word.size(), index);
+  return index > 0 ? index - 1 : index < 0 ? std::max(static_cast<int>(p.normals.size()) + index, -1) : -1;
+}
+
+// The normal of a vn line, zeros where it is none.
+std::array<double, 3> read_normal(const std::vector<std::string_view>& words) {
+  std::array<double, 3> normal{};
+  for (std::size_t k = 0; k < 3 && k + 1 < words.size(); ++k) normal[k] = read_number(words[k + 1]).value_or(0);
+  return std::ranges::all_of(normal, [](double c) { return std::isfinite(c); }) ? normal : std::array<double, 3>{};
+}
+
 Corner read_corner(const Parser& p, std::string_view word) {
   const std::size_t slash = word.find('/');
-  Corner corner{read_index(p, word.substr(0, slash), p.vertex_count()), -1};
+  Corner corner{read_index(p, word.substr(0, slash), p.vertex_count())};
   if (slash == std::string_view::npos) return corner;
   const std::string_view rest = word.substr(slash + 1), texture = rest.substr(0, rest.find('/'));
   if (!texture.empty()) corner.texture = read_index(p, texture, p.uv_count());
+  if (texture.size() < rest.size()) corner.normal = normal_index(p, rest.substr(texture.size() + 1));
   return corner;
 }
 
@@ -96,7 +120,7 @@ void read_face(Parser& p, const std::vector<std::string_view>& words) {
   if (words.size() < 4) p.fail(fmt::format("a face has {} corners", words.size() - 1), "give at least 3");
   const std::size_t begin = p.corners.size();
   for (std::size_t k = 1; k < words.size(); ++k) p.corners.push_back(read_corner(p, words[k]));
-  p.faces.push_back({begin, p.corners.size(), p.line});
+  p.faces.push_back({begin, p.corners.size(), p.line, p.parts(p.part), p.material});
   for (const std::string& name : p.open_groups) {
     const auto [entry, fresh] = p.group_index.emplace(name, p.groups.size());
     if (fresh) p.groups.push_back({name, {}});
@@ -105,12 +129,11 @@ void read_face(Parser& p, const std::vector<std::string_view>& words) {
   }
 }
 
-// Statements that are skipped: normals, lines and points, smoothing, materials, curves and surfaces, display.
-constexpr std::array<std::string_view, 36> passed_over = {
-    "vn",       "vp",         "l",         "p",     "s",     "mg",   "usemtl", "mtllib", "usemap",
-    "maplib",   "cstype",     "deg",       "bmat",  "step",  "curv", "curv2",  "surf",   "parm",
-    "trim",     "hole",       "scrv",      "sp",    "end",   "con",  "lod",    "bevel",  "c_interp",
-    "d_interp", "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh",    "fo",     "bzp"};
+// Statements that are skipped: lines and points, texture maps, curves and surfaces, display.
+constexpr std::array<std::string_view, 32> passed_over = {
+    "vp",       "l",        "p",          "mg",        "usemap", "maplib", "cstype", "deg", "bmat", "step", "curv",
+    "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",   "sp",     "end", "con",  "lod",  "bevel",
+    "c_interp", "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech",  "call",   "csh", "fo",   "bzp"};
 
 // Counts an unknown first word. Throws Error if it is not plain text, as it may hide a known word.
 void note_unknown(Parser& p, std::string_view word) {
@@ -128,6 +151,8 @@ void read_line(Parser& p, std::string_view text) {
     read_coordinates(p, words, 3, p.x);
   } else if (words[0] == "vt") {
     read_coordinates(p, words, 2, p.uv);
+  } else if (words[0] == "vn") {
+    p.normals.push_back(read_normal(words));
   } else if (words[0] == "f") {
     read_face(p, words);
   } else if (words[0] == "o" || words[0] == "g") {
@@ -137,6 +162,14 @@ void read_line(Parser& p, std::string_view text) {
     if (!p.object.empty()) open.push_back(p.object);
     for (std::size_t k = 1; k < words.size(); ++k)
       if (std::find(open.begin(), open.end(), words[k]) == open.end()) open.emplace_back(words[k]);
+    (words[0] == "o" ? p.part.object : p.part.groups) = joined_from(words, 1);
+    if (words[0] == "o") p.part.groups.clear();
+  } else if (words[0] == "s") {
+    p.part.smoothing = joined_from(words, 1);
+  } else if (words[0] == "usemtl") {
+    p.material = words.size() > 1 ? p.materials(joined_from(words, 1)) : -1;
+  } else if (words[0] == "mtllib") {
+    p.material_files.push_back(joined_from(words, 1));
   } else if (std::find(passed_over.begin(), passed_over.end(), words[0]) == passed_over.end()) {
     note_unknown(p, words[0]);
   }
@@ -188,6 +221,43 @@ void cut_faces(const Parser& p, Mesh& mesh) {
   if (p.uv_count() > 0) mesh.uv_triangles = cut.unaryExpr([&](int k) { return p.corners[k].texture; });
 }
 
+std::vector<int> normals_of_corners(const Parser& p, Mesh& mesh) {
+  if (p.normals.empty()) return {};
+  Numbered<std::array<double, 3>> numbered;  // files may repeat a normal for every vertex
+  std::vector<int> of_corner;
+  int missing = 0;
+  for (const Corner& corner : p.corners) {
+    const bool there = corner.normal >= 0 && corner.normal < std::ssize(p.normals);
+    missing += corner.normal >= std::ssize(p.normals);
+    of_corner.push_back(there ? numbered(p.normals[static_cast<std::size_t>(corner.normal)]) : -1);
+  }
+  if (missing > 0)
+    mesh.warnings.push_back(fmt::format("{}: {} corners of faces name normals that are not there", p.name, missing));
+  if (numbered.numbers.empty()) of_corner.clear();
+  return of_corner;
+}
+
+// Empty where triangles say all.
+Look look_of(const Parser& p, Mesh& mesh) {
+  const std::vector<LookPart> parts = p.parts.values();
+  const bool has_parts = parts.size() > 1 || (parts.size() == 1 && parts[0] != LookPart{});
+  const bool has_uv = std::ranges::any_of(p.corners, [](const Corner& corner) { return corner.texture >= 0; });
+  std::vector<int> normals = normals_of_corners(p, mesh);
+  const bool plain = p.corners.size() == 3 * p.faces.size() && !has_uv && normals.empty() && !has_parts;
+  if (plain && p.materials.numbers.empty()) return {};
+  Look look = plain_look(static_cast<std::size_t>(p.vertex_count()), mesh.corners, mesh.corner_begin);
+  if (has_uv) look.uv = mesh.uv;
+  for (std::size_t k = 0; has_uv && k < p.corners.size(); ++k) look.corner_uv.push_back(p.corners[k].texture);
+  look.corner_normal = std::move(normals);
+  for (std::string& name : p.materials.values()) look.materials.push_back({std::move(name)});
+  if (has_parts) look.parts = parts;
+  for (const Face& face : p.faces) {
+    if (!look.materials.empty()) look.face_material.push_back(face.material);
+    if (has_parts) look.face_part.push_back(face.part);
+  }
+  return look;
+}
+
 }  // namespace
 
 Mesh parse_obj(std::string_view text, const std::string& name) {
@@ -199,6 +269,8 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
   mesh.x = Eigen::Map<const Points>(p.x.data(), p.vertex_count(), 3);
   mesh.uv = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(p.uv.data(), p.uv_count(), 2);
   cut_faces(p, mesh);
+  mesh.look = look_of(p, mesh);
+  for (std::string& file : p.material_files) mesh.material_files.emplace_back("", std::move(file));
   mesh.groups = std::move(p.groups);
   for (auto& [group, vertices] : mesh.groups) {
     std::sort(vertices.begin(), vertices.end());

@@ -31,12 +31,19 @@ int coincident_vertices(const Points& x) {
   return count;
 }
 
+void renumber_look(const std::vector<int>& numbers, Mesh& mesh) {
+  if (mesh.look.empty() && !mesh.corners.empty())
+    mesh.look = plain_look(numbers.size(), mesh.corners, mesh.corner_begin);
+  renumber(numbers, mesh.look);
+}
+
 void weld(Mesh& mesh, const std::string& name) {
   const std::vector<int> places = same_places(mesh.x);
   mesh.welded.assign(places.size(), 0);
   int count = 0;
   for (std::size_t v = 0; v < places.size(); ++v)
     mesh.welded[v] = places[v] == static_cast<int>(v) ? count++ : mesh.welded[places[v]];
+  renumber_look(mesh.welded, mesh);
   renumber(mesh.welded, count, mesh);
   leave_out_repeated(mesh, name);
 }

@@ -6,6 +6,7 @@
 #include "physics/energies/measures.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
+#include "pipeline/formats/look.hpp"
 #include "pipeline/reports/bound_field.hpp"
 
 namespace selvedge {
@@ -23,6 +24,7 @@ struct TrajectoryInfo {
   Points rest;
   std::vector<RestTriangle> rest_triangle;
   std::vector<int> pins;
+  std::vector<Look> looks;  // to be written, of each cloth, or none; read by TrajectoryReader::looks
   struct Body {
     std::string name;
     Triangles triangles;

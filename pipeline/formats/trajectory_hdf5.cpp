@@ -6,6 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/formats/look_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 #include "pipeline/host/version.hpp"
 
@@ -33,6 +34,9 @@ void write_constants(const h5::File& file, const TrajectoryInfo& info) {
   file.write_constant("cloth/rest_triangles", H5T_NATIVE_DOUBLE, {info.rest_triangle.size(), 3, 2},
                       info.rest_triangle.data());
   h5::write_integers(file, "cloth/pins", info.pins);
+  const h5::Handle looks = info.looks.empty() ? h5::Handle() : file.make_group("cloth/looks");
+  for (std::size_t c = 0; c < info.looks.size(); ++c)
+    h5::write_look(file, "cloth/looks/" + std::to_string(c), info.looks[c]);
 
   const h5::Handle codes = file.make_group("codes");
   for (const BoundField<Frame>& field : frame_fields())

@@ -36,7 +36,8 @@ class TrajectoryReader {
   explicit TrajectoryReader(const std::filesystem::path&);
   ~TrajectoryReader();
   const TrajectoryInfo& info() const;
-  int frame_count() const;  // full frames
+  std::vector<Look> looks() const;  // of each cloth, empty ones where the file has none; read when asked for
+  int frame_count() const;          // full frames
   bool closed() const;      // false: still being written, or its writer was killed
   Frame frame(int index) const;
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/look_hdf5.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
 
@@ -165,6 +166,14 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) {
 TrajectoryReader::~TrajectoryReader() = default;
 
 const TrajectoryInfo& TrajectoryReader::info() const { return impl_->info; }
+std::vector<Look> TrajectoryReader::looks() const {
+  const std::vector<int>& first = impl_->info.cloth_first_vertex;
+  std::vector<Look> looks(impl_->info.cloth_names.size());
+  for (std::size_t c = 0; c < looks.size() && impl_->file.has("cloth/looks"); ++c)
+    looks[c] = h5::read_look(impl_->file, "cloth/looks/" + std::to_string(c), first[c + 1] - first[c]);
+  return looks;
+}
+
 int TrajectoryReader::frame_count() const { return impl_->frames; }
 bool TrajectoryReader::closed() const { return impl_->closed; }
 

@@ -6,6 +6,7 @@
 
 #include "physics/scene/scene.hpp"
 #include "pipeline/bodies/body.hpp"
+#include "pipeline/formats/look.hpp"
 
 namespace selvedge {
 
@@ -26,6 +27,7 @@ struct Garment {
   std::string made_for = {};                                     // the body's name; empty: not known
   std::vector<Stitch> stitches = {};
   std::vector<RestTriangle> flat = {};  // rest shapes of triangles, as cut from panels; empty: the flattened rest shape
+  Look look = {};                       // of the mesh that it was made of
 };
 
 // How a garment vertex takes weights and directions from the body. tight: from the nearest vertex. loose: averaged over

@@ -61,6 +61,7 @@ void check_garment(const Garment& garment, const std::string& file) {
   check_vertices(garment.pins, vertices, file + ": pins");
   check_stitches(garment.stitches, vertices, file + ": stitches");
   check_flat(garment, file + ": flat");
+  check_look(garment.look, vertices, file + ": look");
 }
 
 }  // namespace selvedge

@@ -26,6 +26,7 @@ DressedMesh dressed(const Mesh& mesh, const BodyModel& body, const Dressing& how
   garment.made_in = how.pose;
   garment.skin = attached_in(how, mesh, body);
   garment.groups = mesh.groups;
+  garment.look = mesh.look;
   std::vector<std::string> taken;
   for (const auto& [name, vertices] : mesh.groups) taken.push_back(name);
   for (NamedLoop& loop : named_loops(garment.skin, body, taken)) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/bodies/skin_hdf5.hpp"
+#include "pipeline/formats/look_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -125,6 +126,7 @@ void write_garment(const std::filesystem::path& path, const Garment& garment) {
     h5::write_integers(file, "pins", garment.pins);
     write_stitches(file, garment.stitches);
     write_flat(file, garment.flat);
+    h5::write_look(file, "look", garment.look);
   });
 }
 
@@ -139,6 +141,7 @@ Garment read_garment(const std::filesystem::path& path) {
   if (fields.has("pins")) garment.pins = fields.integers("pins");
   garment.stitches = read_stitches(fields);
   garment.flat = read_flat(fields);
+  garment.look = h5::read_look(fields.file(), "look", garment.skin.rest.rows());
   check_garment(garment, path.string());
   return garment;
 }

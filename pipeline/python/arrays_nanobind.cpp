@@ -85,6 +85,9 @@ nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> view_of(Points& points, const n
 
 nb::object copy_of(const Points& points) { return copied<double>(points, {count(points.rows()), 3}); }
 nb::object copy_of(const Triangles& triangles) { return copied<int>(triangles, {count(triangles.rows()), 3}); }
+nb::object copy_of(const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>& values) {
+  return copied<double>(values, {count(values.rows()), 2});
+}
 nb::object copy_of(const Eigen::VectorXd& values) { return copied<double>(values, {count(values.size())}); }
 nb::object copy_of(const std::vector<int>& values) { return copied<int>(values, {values.size()}); }
 

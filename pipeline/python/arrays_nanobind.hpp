@@ -30,6 +30,7 @@ nanobind::ndarray<nanobind::numpy, double, nanobind::shape<-1, 3>> view_of(Point
 // A copy that numpy owns.
 nanobind::object copy_of(const Points&);
 nanobind::object copy_of(const Triangles&);
+nanobind::object copy_of(const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>&);
 nanobind::object copy_of(const Eigen::VectorXd&);
 nanobind::object copy_of(const std::vector<int>&);
 

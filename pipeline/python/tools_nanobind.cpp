@@ -15,6 +15,7 @@
 #include "pipeline/python/bindings_nanobind.hpp"
 #include "pipeline/python/fields_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/tools/animated_run.hpp"
 
 namespace selvedge {
 namespace {
@@ -181,6 +182,42 @@ nb::dict read_trajectory(const std::filesystem::path& file) {
   return result;
 }
 
+nb::list read_surfaces(const std::filesystem::path& run, bool obstacles) {
+  ExportRequest request;
+  request.trajectory = trajectory_file(run);
+  request.obstacles = obstacles;
+  const AnimatedSurfaces made = animated_run(request).surfaces;
+  std::vector<nb::list> x(made.surfaces.size());
+  for (int i = 0; i < made.frame_count; ++i) {
+    const std::vector<PointsF> all = made.frame(i);
+    for (std::size_t s = 0; s < x.size(); ++s)
+      if (i == 0 || made.surfaces[s].moving) x[s].append(copy_of(Points(all[s].cast<double>())));
+  }
+  nb::list surfaces;
+  for (std::size_t s = 0; s < x.size(); ++s) {
+    const AnimatedSurface& surface = made.surfaces[s];
+    const Look& look = surface.look;
+    const Triangles& t = surface.triangles;
+    std::vector<int> counts(static_cast<std::size_t>(t.rows()), 3), corners(t.data(), t.data() + t.size());
+    if (!look.empty()) {
+      for (int face = 0; face < look.faces(); ++face) counts[face] = look.end_of(face) - look.begin_of(face);
+      counts.resize(look.begin.size());
+      corners = look.corners;
+    }
+    nb::dict one;
+    one["name"] = surface.name;
+    one["cloth"] = surface.cloth;
+    one["fps"] = made.fps;
+    one["counts"] = copy_of(counts);
+    one["corners"] = copy_of(corners);
+    one["uv"] = copy_of(look.uv);
+    one["corner_uv"] = copy_of(look.corner_uv);
+    one["x"] = x[s];
+    surfaces.append(one);
+  }
+  return surfaces;
+}
+
 nb::dict read_cache(const std::filesystem::path& file) {
   const PointCache cache = read_point_cache(file);
   nb::list x;
@@ -213,6 +250,12 @@ void bind_tools(nb::module_& module) {
   module.def("read_trajectory", &read_trajectory, "file"_a,
              "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame; reports, a "
              "list of dicts, one a frame, by the names of docs/files.md.");
+  module.def("read_surfaces", &read_surfaces, "run"_a, "obstacles"_a = false,
+             "The cloths of a run (its run.h5 or folder), each by itself, and its obstacles, as exports have them: by "
+             "the vertices and faces of the cloth's own file. A list of dicts: name; cloth, whether it is one; fps; "
+             "counts, the corners of each face; corners, their vertices, one face after another; uv, k x 2; corner_uv, "
+             "the row of uv of each corner, -1 for none, or empty; x, a list of n x 3 [m], one a frame, or one where "
+             "the surface never moves.");
   module.def(
       "read_cache", &read_cache, "file"_a,
       "A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; at, when "

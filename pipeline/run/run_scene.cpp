@@ -153,7 +153,8 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   const std::filesystem::path first_file = start ? file : request.out / "resumed.h5";
   RunSummary summary = empty_summary(setup, start ? start->prepared : setup.prepared, stepper);
   summary.inputs_hash = hash_of_inputs(inputs);
-  const TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
+  TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
+  info.looks = setup.looks;
   Recorder recorder{
       setup, request, summary, inputs, TrajectoryWriter(first_file, info), energy_terms(setup.scene, stepper.traits())};
   if (start) {

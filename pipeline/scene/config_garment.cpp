@@ -17,6 +17,9 @@ const Options<GarmentOptions>& garment_options() {
             "wears it in its zero pose, in the `shape` that the body is given, else in the mean one."),
        unit_key(),
        word("fit", {"loose", "tight"}, "loose", "How a mesh follows the body, as `--fit` of `selvedge dress`."),
+       flag("weld", false,
+            "True: joins vertices of the mesh that lie at one place, as files have them along seams of their texture. "
+            "Exports have them apart again."),
        with_words(text("cut", "Name of a garment that the program makes (docs/garments.md)."), garment_names()),
        texts("over", "Cuts that are worn under the `cut`, from the body outward."),
        number("edge", &GarmentOptions::edge, Unit::length, positive, "Edge length of the `cut`."),

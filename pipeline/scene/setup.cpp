@@ -353,6 +353,8 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
     setup.prepared =
         fmt::format("cut: {} of {} triangles out", setup.initial.cut_out.size(), setup.scene.surface.triangles.rows());
   for (const auto& who : parts.bodies) setup.bodies.push_back(who ? who->known : nullptr);
+  if (std::ranges::any_of(parts.cloths, [](const ClothPart& part) { return !part.mesh.look.empty(); }))
+    for (const ClothPart& part : parts.cloths) setup.looks.push_back(part.mesh.look);
   setup.outcomes = read_outcomes(config["outcome"], parts.cloths, setup.scene);
   setup.short_form = config["short_form"].words;
   setup.config = to_yaml(config);

@@ -11,6 +11,7 @@
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/steppers/following_stepper.hpp"
+#include "pipeline/formats/look.hpp"
 #include "pipeline/garments/worn_part.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/outcome.hpp"
@@ -41,6 +42,7 @@ struct Setup {
   std::function<Drive(double time)> drive_at;        // the world at a time [s]
   std::vector<std::shared_ptr<PosedBodies>> bodies;  // of each obstacle, null for what is no body: what drive_at knows
   std::vector<Follower> followers;                   // vertices without mass that go with others, all of them pins
+  std::vector<Look> looks;                           // of each cloth, for the trajectory; empty: no file gives one
   std::vector<Outcome> outcomes;                     // what must come true
   std::vector<WornCloth> worn;                       // garments on their bodies, by where skinning has them at first
   std::vector<std::string> short_form;               // overrides that make a shorter run of the scene

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh_mtl.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/outfit.hpp"
@@ -95,6 +97,8 @@ bool is_mesh(const std::filesystem::path& name) { return name.extension() == ".o
 Garment read_dressed(const Config& section, const std::filesystem::path& file, const Performance& who,
                      std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
+  read_materials(mesh);
+  if (section["weld"].flag()) weld(mesh, file.string());
   mesh.x *= read_unit(section["unit"]);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
@@ -114,8 +118,8 @@ Garment read_file(const Config& section, const std::filesystem::path& folder, co
   if (is_mesh(path)) return read_dressed(section, path, who, warnings);
   if (path.extension() != ".h5")
     file.fail("is no .h5, .obj or .ply file", "`selvedge dress` makes a garment of a mesh that a body wears");
-  if (read_unit(section["unit"]) != 1 || section["fit"].text() != "loose")
-    file.fail("is a garment file, which has its own unit and fit", "leave `unit` and `fit` out");
+  if (read_unit(section["unit"]) != 1 || section["fit"].text() != "loose" || section["weld"].flag())
+    file.fail("is a garment file, which has its own unit and fit", "leave `unit`, `fit` and `weld` out");
   Garment garment = read_garment(path);
   check_fits(file, garment, who);
   if (!garment.made_for.empty() && garment.made_for != who.body.name)
@@ -162,6 +166,7 @@ Mesh rest_mesh(const Wearing& wearing) {
   mesh.x = rest_shape(wearing.garment, wearing.by->body, wearing.by->shape);
   mesh.triangles = wearing.garment.skin.triangles;
   mesh.groups = wearing.garment.groups;
+  mesh.look = wearing.garment.look;
   const std::vector<RestTriangle>& flat = wearing.garment.flat;
   if (flat.empty()) return mesh;
   mesh.uv.resize(3 * std::ssize(flat), 2);

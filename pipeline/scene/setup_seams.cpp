@@ -9,6 +9,7 @@
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/obstacles/setup_pairs.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/setup_selection.hpp"
@@ -160,6 +161,7 @@ void sew(const Config& list, const std::filesystem::path& folder, ClothPart& par
   check_fans(after, welded);
   for (const SewnPair& pair : welded.pairs)
     part.sewn_apart = std::max(part.sewn_apart, (row(mesh.x, pair.vertices[0]) - row(mesh.x, pair.vertices[1])).norm());
+  renumber_look(welded.vertex, mesh);
   mesh.x = means(mesh.x, welded);
   part.rest = means(part.rest, welded);
   for (auto& [name, vertices] : mesh.groups) {

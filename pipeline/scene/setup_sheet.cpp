@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/formats/mesh_mtl.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/scene/config_scene.hpp"
@@ -94,7 +95,9 @@ Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
   }
   if (const Config& shape = section["ribbon"]; shape.given) return read_ribbon(shape);
   if (const Config& shape = section["tshirt"]; shape.given) return read_tshirt(shape);
-  return read_mesh_section(section["mesh"], folder);
+  Mesh mesh = read_mesh_section(section["mesh"], folder);
+  read_materials(mesh);
+  return mesh;
 }
 
 }  // namespace selvedge

@@ -10,6 +10,8 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh_mtl.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/worn_part.hpp"
@@ -109,11 +111,16 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, DressR
 DressReport dress(const DressRequest& request) {
   h5::check_out_name(request.out, "garments");
   Mesh mesh = read_mesh(request.mesh);
+  read_materials(mesh);
+  if (request.weld) weld(mesh, request.mesh.string());
   mesh.x *= metres_per_unit(request.unit);
   const Performance who = read_wearer(request);
   DressReport report;
   report.warnings = mesh.warnings;
   report.warnings.insert(report.warnings.end(), who.warnings.begin(), who.warnings.end());
+  if (const int apart = request.weld ? 0 : coincident_vertices(mesh.x); apart > 0)
+    report.warnings.push_back(fmt::format(
+        "{} vertices lie where others do, and are not joined to them: cloth parts there; --weld joins them", apart));
   if (request.pose && !who.clip.poses.empty() && request.time > end_of(who.clip))
     report.warnings.push_back(fmt::format("{} ends at {:.4g} s, before {:.4g} s: its last pose is taken", *request.pose,
                                           end_of(who.clip), request.time));

@@ -19,6 +19,7 @@ struct DressRequest {
   double time = 0;                     // time in the clip [s]
   std::vector<std::string> rotations;  // JOINT=x,y,z: axis times angle [rad], which replaces the pose's
   std::string fit = "loose";           // loose or tight
+  bool weld = false;                   // joins vertices of the mesh that lie at one place
   std::vector<std::string> pins;  // groups that stay with the body, or none; empty: waists of garments that would fall
 };
 

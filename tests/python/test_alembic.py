@@ -1,12 +1,16 @@
 """Alembic files, written and read; skipped without the package alembic3d."""
 
+import os
+
 import numpy as np
 import pytest
+import shirt as garment
 
 import selvedge
 
 pytest.importorskip("alembic3d")
 
+PROGRAM = os.environ.get("SELVEDGE_PROGRAM")
 FACES = [[0, 1, 2], [2, 1, 3, 4]]  # a triangle and a quadrangle
 X = np.random.default_rng(5).uniform(-1, 1, (4, 5, 3))
 
@@ -56,3 +60,24 @@ def test_files_that_are_none(tmp_path):
         selvedge.read_alembic(tmp_path / "text.abc")
     with pytest.raises(selvedge.Error, match="its folder does not exist"):
         selvedge.write_alembic(tmp_path / "no" / "run.abc", X, FACES, 25)
+
+
+@pytest.mark.skipif(not PROGRAM, reason="SELVEDGE_PROGRAM is not set")
+def test_a_whole_run(tmp_path):
+    from alembic3d import Abc, AbcGeom
+
+    shirt = garment.simulated(PROGRAM, tmp_path)
+    file = tmp_path / "run.abc"
+    assert selvedge.export_alembic(tmp_path / "out", file) == ["shirt", "obstacle_0_person"]
+    meshes = selvedge.read_alembic(file)
+    assert list(meshes) == ["/obstacle_0_person/obstacle_0_personShape", "/shirt/shirtShape"]
+    mesh, person = meshes["/shirt/shirtShape"], meshes["/obstacle_0_person/obstacle_0_personShape"]
+    assert mesh["faces"] == shirt.faces.tolist() and mesh["fps"] == pytest.approx(garment.FPS)
+    assert (np.array(mesh["x"]) == np.array(shirt.frames, dtype=np.float32)).all()
+    assert len(person["x"]) == 1  # it stands still
+    top = Abc.IArchive(str(file)).getTop()
+    uvs = AbcGeom.IPolyMesh(top.getChild("shirt"), "shirtShape").getSchema().getUVsParam().getExpandedValue()
+    assert uvs.getScope() == AbcGeom.GeometryScope.kFacevaryingScope
+    uv = np.array([tuple(value) for value in uvs.getVals()]).reshape(-1, 3, 2)
+    assert np.abs(uv - shirt.uv[shirt.faces[:, ::-1]]).max() < 1e-6
+    assert selvedge.export_alembic(tmp_path / "out", file, obstacles=False) == ["shirt"]

@@ -5,8 +5,19 @@ from __future__ import annotations
 import operator
 from typing import Callable
 
-from ._selvedge import Error, Scene, check, compare, contours, distance, read_cache, read_trajectory, untangle
-from .alembic import AlembicMesh, read_alembic, write_alembic
+from ._selvedge import (
+    Error,
+    Scene,
+    check,
+    compare,
+    contours,
+    distance,
+    read_cache,
+    read_surfaces,
+    read_trajectory,
+    untangle,
+)
+from .alembic import AlembicMesh, export_alembic, read_alembic, write_alembic
 from .steppers import SceneArrays, StepDrive, Stepper, StepStart
 
 __all__ = [
@@ -21,8 +32,10 @@ __all__ = [
     "compare",
     "contours",
     "distance",
+    "export_alembic",
     "read_alembic",
     "read_cache",
+    "read_surfaces",
     "read_trajectory",
     "simulate",
     "untangle",

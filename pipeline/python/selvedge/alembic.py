@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
 import os
 import pathlib
 import tempfile
@@ -10,7 +12,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from ._selvedge import Error
+from ._selvedge import Error, read_surfaces
 
 
 class AlembicMesh(TypedDict):
@@ -84,30 +86,87 @@ def write_alembic(
     """Writes one mesh as an Alembic file (Ogawa). x: positions, frames x n x 3 or a list of n x 3 [m], kept as 32-bit floats;
     faces: m x 3, or a list of lists of vertices, counter-clockwise from their right side; fps: frames a second, the first at
     time 0; name: of the mesh. The file takes its name when it is whole. Raises Error for arrays that do not fit."""
-    Abc, core, AbcGeom, IntArrayFromBuffer, V3fArrayFromBuffer = _library()
-    path = pathlib.Path(file)
-    frames = _frames(x)
-    counts, corners = _corners(faces, len(frames[0]))
-    if not (np.isfinite(fps) and fps > 0):
-        raise Error(f"fps: is {fps}; give frames a second, above 0")
     if not name or "/" in name:
         raise Error(f"name: is {name!r}; give a name without /")
+    frames = _frames(x)
+    _write(file, [_Written(name, frames, *_corners(faces, len(frames[0])))], fps)
+
+
+def export_alembic(run: str | os.PathLike[str], file: str | os.PathLike[str], *, obstacles: bool = True) -> list[str]:
+    """Writes a run (its run.h5, or the folder) as one Alembic file: a mesh a cloth, with the vertices, faces and texture
+    coordinates of the cloth's own file where it had one, and with obstacles a mesh an obstacle. What never moves has one
+    sample. Returns the meshes' names: those of the run, with / and repeated ones replaced. The whole run is held in
+    memory. Raises Error for a run without a frame and positions that are not finite."""
+    meshes: list[_Written] = []
+    surfaces = read_surfaces(run, obstacles)
+    for surface in surfaces:
+        plain = surface["name"].replace("/", "_") or "_"
+        taken = {mesh.name for mesh in meshes}
+        names = itertools.chain([plain], (f"{plain}_{k}" for k in itertools.count(1)))
+        name = next(one for one in names if one not in taken)
+        ends = np.cumsum(surface["counts"])[:-1]
+        faces = np.split(surface["corners"], ends)
+        try:
+            frames = _frames(surface["x"])
+        except Error as why:
+            raise Error(f"{run}, {surface['name']}: {why}") from None
+        mesh = _Written(name, frames, *_corners(faces, len(frames[0])))
+        if len(surface["corner_uv"]):
+            rows = np.concatenate([face[::-1] for face in np.split(surface["corner_uv"], ends)])
+            uv = np.vstack([surface["uv"], np.zeros((1, 2))])  # corners without one: the row of zeros
+            mesh.uv, mesh.uv_rows = uv.astype(np.float32), np.where(rows < 0, len(uv) - 1, rows).astype(np.uint32)
+        meshes.append(mesh)
+    _write(file, meshes, surfaces[0]["fps"])
+    return [mesh.name for mesh in meshes]
+
+
+@dataclasses.dataclass
+class _Written:
+    """A mesh as Alembic has it: float32 positions, one array a sample, and int32 faces, clockwise."""
+
+    name: str
+    frames: list[np.ndarray]
+    counts: np.ndarray
+    corners: np.ndarray
+    uv: np.ndarray | None = None
+    uv_rows: np.ndarray | None = None
+
+
+def _write(file: str | os.PathLike[str], meshes: list[_Written], fps: float) -> None:
+    Abc, core, AbcGeom, IntArrayFromBuffer, V3fArrayFromBuffer = _library()
+    path = pathlib.Path(file)
+    if not (np.isfinite(fps) and fps > 0):
+        raise Error(f"fps: is {fps}; give frames a second, above 0")
     if not path.parent.is_dir():
         raise Error(f"{path}: its folder does not exist")
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         growing = pathlib.Path(folder) / path.name
         archive = Abc.OArchive(str(growing))
         sampling = archive.addTimeSampling(core.TimeSampling(1.0 / fps, 0.0))
-        above = AbcGeom.OXform(archive.getTop(), name)
-        mesh = AbcGeom.OPolyMesh(above, name + "Shape")
-        schema = mesh.getSchema()
-        schema.setTimeSampling(sampling)
-        corner_array, count_array = IntArrayFromBuffer(corners), IntArrayFromBuffer(counts)
-        for frame in frames:
-            positions = V3fArrayFromBuffer(frame)  # a sample points into it
-            schema.set(AbcGeom.OPolyMeshSchemaSample(positions, corner_array, count_array))
-        del schema, mesh, above, archive  # the library writes the file's end when the last of them goes
+        for one in meshes:
+            above = AbcGeom.OXform(archive.getTop(), one.name)
+            mesh = AbcGeom.OPolyMesh(above, one.name + "Shape")
+            schema = mesh.getSchema()
+            schema.setTimeSampling(sampling)
+            corners, counts = IntArrayFromBuffer(one.corners), IntArrayFromBuffer(one.counts)
+            for k, frame in enumerate(one.frames):
+                positions = V3fArrayFromBuffer(frame)  # a sample points into it
+                sample = AbcGeom.OPolyMeshSchemaSample(positions, corners, counts)
+                if k == 0 and one.uv is not None:
+                    sample.setUVs(_uv_sample(AbcGeom, one))
+                schema.set(sample)
+            del schema, mesh, above
+        del archive  # the library writes the file's end when the last of them goes
         os.replace(growing, path)
+
+
+def _uv_sample(AbcGeom, mesh: _Written):
+    from imath import UnsignedIntArray, V2fArrayFromBuffer
+
+    rows = UnsignedIntArray(len(mesh.uv_rows))
+    for k, row in enumerate(mesh.uv_rows.tolist()):
+        rows[k] = row
+    return AbcGeom.OV2fGeomParamSample(V2fArrayFromBuffer(mesh.uv), rows, AbcGeom.GeometryScope.kFacevaryingScope)
 
 
 def _frames(x) -> list[np.ndarray]:

@@ -29,7 +29,7 @@ Value value_at(const std::string& bytes, std::size_t at, bool big_endian = false
 }
 
 Surface cache(const std::string& bytes, std::size_t at, int points, std::vector<double> times, bool big_endian) {
-  Surface surface{{}, std::move(times), {}};
+  Surface surface{{}, std::move(times), {}, {}, {}, {}, {}, {}, {}};
   for (std::size_t i = 0; i < surface.times.size(); ++i) {
     surface.x.emplace_back(points, 3);
     for (int k = 0; k < 3 * points; ++k, at += 4) surface.x.back().data()[k] = value_at<float>(bytes, at, big_endian);
@@ -47,7 +47,7 @@ struct Gltf {
   Eigen::MatrixXd rows(int number) const {
     const json& a = tables["accessors"][number];
     const json& view = tables["bufferViews"][a["bufferView"].get<int>()];
-    const int type = a["componentType"], width = a["type"] == "VEC3" ? 3 : 1;
+    const int type = a["componentType"], width = a["type"] == "VEC3" ? 3 : a["type"] == "VEC2" ? 2 : 1;
     const std::map<int, std::size_t> sizes = {{5120, 1}, {5121, 1}, {5122, 2}, {5123, 2}, {5125, 4}, {5126, 4}};
     const std::size_t size = sizes.at(type), stride = view.value("byteStride", size * width);
     const std::size_t begin = view["byteOffset"].get<std::size_t>() + a.value("byteOffset", std::size_t{0});
@@ -87,6 +87,27 @@ Gltf open_glb(const std::filesystem::path& path) {
   Gltf gltf{json::parse(all.substr(20, text)), all.substr(28 + text, bytes)};
   if (gltf.tables["buffers"][0]["byteLength"] != gltf.bytes.size()) throw std::runtime_error("the buffer's length");
   return gltf;
+}
+
+// The triangles of all primitives, which share their vertices; materials and parts by their names.
+void read_primitives(const Gltf& gltf, const json& mesh, Surface& surface) {
+  std::vector<int> corners;
+  for (const json& primitive : mesh["primitives"]) {
+    if (primitive["attributes"] != mesh["primitives"][0]["attributes"]) throw std::runtime_error("other vertices");
+    const Eigen::MatrixXd own = gltf.rows(primitive["indices"]);
+    const std::string material = gltf.tables["materials"][primitive["material"].get<int>()]["name"];
+    const std::string part = primitive.value("extras", json::object()).value("groups", "");
+    for (Eigen::Index i = 0; i < own.rows(); ++i) {
+      if (i % 3 == 0) surface.materials[material].push_back(static_cast<int>(corners.size() / 3));
+      if (i % 3 == 0 && !part.empty()) surface.parts[part].push_back(static_cast<int>(corners.size() / 3));
+      corners.push_back(static_cast<int>(own(i, 0)));
+    }
+  }
+  surface.triangles = Eigen::Map<Triangles>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
+  const json& attributes = mesh["primitives"][0]["attributes"];
+  if (!attributes.contains("TEXCOORD_0")) return;
+  surface.uv = gltf.rows(attributes["TEXCOORD_0"]);
+  surface.uv.col(1) = 1 - surface.uv.col(1).array();
 }
 
 PointsF placed(const json& node, const Eigen::MatrixXd& local) {
@@ -144,10 +165,13 @@ std::map<std::string, Surface> glb(const std::filesystem::path& path) {
     const json& mesh = gltf.tables["meshes"][node["mesh"].get<int>()];
     const json& primitive = mesh["primitives"][0];
     Surface& surface = found[node["name"].get<std::string>()];
-    const Eigen::MatrixXd corners = gltf.rows(primitive["indices"]),
-                          base = gltf.rows(primitive["attributes"]["POSITION"]);
-    surface.triangles.resize(corners.rows() / 3, 3);
-    for (Eigen::Index i = 0; i < corners.rows(); ++i) surface.triangles.data()[i] = static_cast<int>(corners(i, 0));
+    const Eigen::MatrixXd base = gltf.rows(primitive["attributes"]["POSITION"]);
+    read_primitives(gltf, mesh, surface);
+    const auto normals = [&](std::size_t target) -> PointsF {
+      Eigen::MatrixXd sum = gltf.rows(primitive["attributes"]["NORMAL"]);
+      if (primitive.contains("targets")) sum += gltf.rows(primitive["targets"][target]["NORMAL"]);
+      return sum.cast<float>();
+    };
     const auto shaped = [&](const std::function<double(std::size_t)>& weight) {
       Eigen::MatrixXd x = base;
       for (std::size_t k = 0; primitive.contains("targets") && k < primitive["targets"].size(); ++k)
@@ -158,6 +182,9 @@ std::map<std::string, Surface> glb(const std::filesystem::path& path) {
     const PointsF still = shaped([&](std::size_t k) { return mesh["weights"][k].get<double>(); });
     surface.times = {0};
     surface.x = {still};
+    if (primitive["attributes"].contains("NORMAL"))
+      for (std::size_t k = 0; k < (primitive.contains("targets") ? primitive["targets"].size() : 1); ++k)
+        surface.normals.push_back(normals(k));
     for (const json& animation : gltf.tables.value("animations", json::array()))
       for (const json& channel : animation["channels"]) {
         if (channel["target"]["node"] != number || channel["target"]["path"] != "weights") continue;
@@ -181,15 +208,52 @@ std::map<std::string, Surface> usda(const std::filesystem::path& path) {
   std::map<std::string, Surface> found;
   Surface* surface = nullptr;
   double codes_a_second = 0;
-  bool samples = false;
+  bool samples = false, normal_samples = false;
   int depth = 0;
+  std::string subset, material;  // names of the last ones that were opened
+  std::vector<int> faces;        // of the subset
+  std::vector<double> st;        // texture coordinates by row
+  std::vector<int> normal_rows;  // of each corner
+  const auto ints = [](const std::string& text) {
+    const std::vector<double> values = numbers(text);
+    return std::vector<int>(values.begin(), values.end());
+  };
+  const auto named = [](const std::string& line) {
+    return line.substr(line.find('"') + 1, line.find('"', line.find('"') + 1) - line.find('"') - 1);
+  };
   const auto after = [](const std::string& line) { return line.substr(line.find('=') + 1); };
+  const auto starts = [](const std::string& line, const char* word) { return line.find(word) != std::string::npos; };
+  const auto read_usd_look = [&](const std::string& line) {
+    if (starts(line, "faceVertexCounts")) surface->counts = ints(after(line));
+    if (starts(line, "primvars:st = ")) st = numbers(after(line));
+    if (starts(line, "primvars:normals:indices")) normal_rows = ints(after(line));
+    if (starts(line, "primvars:st:indices")) {
+      const std::vector<int> rows = ints(after(line));
+      surface->uv.resize(std::ssize(rows), 2);
+      for (Eigen::Index k = 0; k < std::ssize(rows); ++k)
+        surface->uv.row(k) << st.at(2 * rows[k]), st.at(2 * rows[k] + 1);
+    }
+    if (starts(line, "def GeomSubset")) subset = named(line), faces.clear();
+    if (starts(line, "int[] indices = ")) faces = ints(after(line));
+    if (starts(line, "familyName = \"parts\"")) subset = "part " + subset;
+    if (starts(line, "int[] indices = ") && subset.starts_with("part ")) surface->parts[subset.substr(5)] = faces;
+    if (!starts(line, "material:binding = ")) return;
+    material = line.substr(line.rfind('/') + 1, line.rfind('>') - line.rfind('/') - 1);
+    if (subset.empty())
+      for (int f = 0; f < std::ssize(surface->counts); ++f) faces.push_back(f);
+    surface->materials[material] = faces;
+  };
   for (std::string line; std::getline(stream, line);) {
     for (const char c : line) depth += (c == '{' || c == '(' || c == '[') - (c == '}' || c == ')' || c == ']');
     if (line.find("timeCodesPerSecond") != std::string::npos) codes_a_second = numbers(after(line)).at(0);
-    if (line.find("def Mesh \"") != std::string::npos)
-      surface = &found[line.substr(line.find('"') + 1, line.rfind('"') - line.find('"') - 1)];
+    if (line.find("def Mesh \"") != std::string::npos) {
+      surface = &found[named(line)];
+      subset.clear();
+      faces.clear();
+    }
+    if (surface) read_usd_look(line);
     if (line.find("int[] faceVertexIndices") != std::string::npos) {
+      surface->corners = ints(after(line));
       const std::vector<double> corners = numbers(after(line));
       surface->triangles.resize(corners.size() / 3, 3);
       for (std::size_t i = 0; i < corners.size(); ++i) surface->triangles.data()[i] = static_cast<int>(corners[i]);
@@ -198,12 +262,17 @@ std::map<std::string, Surface> usda(const std::filesystem::path& path) {
       surface->times.push_back(0);
       surface->x.push_back(points_of(after(line)));
     }
+    if (normal_samples && line.find(": [") != std::string::npos) {
+      const PointsF rows = points_of(line.substr(line.find(':') + 1));
+      surface->normals.push_back(rows(normal_rows, Eigen::all));
+    }
     if (samples && line.find(':') != std::string::npos) {
       surface->times.push_back(std::stod(line) / codes_a_second);
       surface->x.push_back(points_of(line.substr(line.find(':') + 1)));
     }
     if (line.find(".timeSamples") != std::string::npos) samples = line.find("point3f[] points") != std::string::npos;
-    if (line.find('}') != std::string::npos) samples = false;
+    if (line.find("normals.timeSamples") != std::string::npos) normal_samples = true;
+    if (line.find('}') != std::string::npos) samples = normal_samples = false;
   }
   if (depth != 0) throw std::runtime_error("a bracket is not closed");
   return found;

@@ -22,7 +22,8 @@ std::vector<std::filesystem::path> export_xyz(const AnimatedSurfaces& run, const
   return written;
 }
 
-constexpr ExportFormat xyz{"xyz", "points as text", false, [](int, int frames) { return frames; }, export_xyz};
+constexpr ExportFormat xyz{"xyz", "points as text", [](const AnimatedSurfaces& run) { return run.frame_count; },
+                           export_xyz};
 
 TEST_CASE("extending: an added format writes its files into the folder", "[export]") {
   const fake::Folder folder("added_format");
@@ -32,7 +33,7 @@ TEST_CASE("extending: an added format writes its files into the folder", "[expor
   const auto written = xyz.write(run, {folder.path / "run.h5", "xyz", folder.path / "xyz", false, {}});
   REQUIRE(written == std::vector{folder.path / "xyz" / "frame_00000.xyz", folder.path / "xyz" / "frame_00001.xyz"});
   CHECK(fake::whole(written[1]) == "1 1 1\n1 1 1\n");
-  CHECK(xyz.reads(3, 2) == 2);
+  CHECK(xyz.reads(run) == 2);
 }
 
 }  // namespace selvedge::test_added_format

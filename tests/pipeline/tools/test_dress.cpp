@@ -79,6 +79,44 @@ TEST_CASE("A skirt is dressed in the zero pose, its waist pinned, its groups kep
   CHECK_THROWS_WITH(dress(request), Contains("--pin") && Contains("did you mean `hem`"));
 }
 
+TEST_CASE("A mesh whose vertices are there several times is welded, and keeps its look in the file", "[dress][look]") {
+  const Folder folder("dress_weld");
+  const fake::Piece piece = fake::skirt(fake::mannequin(), -0.35, 0.1, 0.02, 40, 14);
+  DressRequest request;
+  request.mesh = folder.path / "split.obj";
+  request.out = folder.path / "skirt.h5";
+  {
+    std::ofstream out(request.mesh);
+    out.precision(17);
+    for (const int v : piece.triangles.reshaped<Eigen::RowMajor>())
+      out << "v " << piece.x(v, 0) << " " << piece.x(v, 1) << " " << piece.x(v, 2) << "\nvt 0." << v << " 0.5\n";
+    out << "usemtl wool\n";
+    for (Eigen::Index t = 0; t < piece.triangles.rows(); ++t) {
+      out << "f";
+      for (int k = 1; k <= 3; ++k) out << " " << 3 * t + k << "/" << 3 * t + k;
+      out << "\n";
+    }
+  }
+  request.weld = true;
+  const DressReport report = dress(request);
+  CHECK(report.warnings.empty());
+  CHECK(report.components == 1);
+  const Garment garment = read_garment(request.out);
+  REQUIRE(garment.skin.rest.rows() == piece.x.rows());
+  REQUIRE(std::ssize(garment.look.vertex) == piece.triangles.size());
+  CHECK(garment.look.corner_uv == garment.look.corners);
+  CHECK(garment.look.materials == std::vector<LookMaterial>{{"wool"}});
+  const Points split = garment.skin.rest(garment.look.vertex, Eigen::all);
+  const std::vector<int> corners(piece.triangles.data(), piece.triangles.data() + piece.triangles.size());
+  CHECK(farthest(split, piece.x(corners, Eigen::all)) < 1e-9);
+
+  request.weld = false;
+  const DressReport apart = dress(request);
+  CHECK(apart.components == piece.triangles.rows());
+  REQUIRE(apart.warnings.size() == 1);
+  CHECK_THAT(apart.warnings[0], Contains("--weld joins them"));
+}
+
 TEST_CASE("A mesh in a pose and shape comes back there to a nanometre, and rests there", "[dress]") {
   const Folder folder("dress_posed");
   const BodyModel& body = fake::mannequin();

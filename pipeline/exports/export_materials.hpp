@@ -1,0 +1,15 @@
+#pragma once
+
+#include "pipeline/exports/animated_surfaces.hpp"
+
+namespace selvedge {
+
+// The materials of several surfaces in one file: those that are the same once, others of one name with a number.
+struct ExportMaterials {
+  std::vector<LookMaterial> all;
+  std::vector<std::vector<int>> of;  // of each surface: the numbers of its look's materials
+};
+
+ExportMaterials export_materials(const std::vector<AnimatedSurface>&);
+
+}  // namespace selvedge

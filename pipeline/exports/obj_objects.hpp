@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/exports/animated_surfaces.hpp"
+
+namespace selvedge {
+
+// OBJ of surfaces at positions x, an object each. One with a look has the vertices, faces, texture coordinates,
+// materials and parts of its file, and normals moved with it. One alone without a look is vertices and triangles.
+std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<const PointsF> x,
+                         const std::string& material_file);
+
+// The names of surfaces' materials are made different in one file; that file, which objects_text names. Empty: no
+// surface has any.
+std::string objects_materials(std::span<const AnimatedSurface> surfaces);
+
+}  // namespace selvedge
