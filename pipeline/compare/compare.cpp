@@ -341,7 +341,9 @@ bool report_drapes(const CompareRequest& request, const Comparison& comparison, 
   result.views = request.out / "views";
   std::vector<MeasuredDrapes> all;
   for (const ComparedDrapes& one : comparison.drapes) {
-    std::optional<MeasuredDrapes> made = measured_drapes(one, result.views, request.log, request.stop);
+    std::optional<MeasuredDrapes> made = read_for(comparison.file.string() + ": drapes `" + one.name + "`", [&] {
+      return measured_drapes(one, result.views, request.log, request.stop);
+    });
     if (!made) return false;
     if (!made->rows.empty()) write_file(request.out / (one.name + ".csv"), drape_table_csv(made->rows));
     all.push_back(std::move(*made));
@@ -352,13 +354,18 @@ bool report_drapes(const CompareRequest& request, const Comparison& comparison, 
   return true;
 }
 
+// The scenes of `sequences`, if there are any.
+void add_made_scenes(Comparison& comparison) {
+  const std::string& training = comparison.sequences.training;
+  if (training.empty() && comparison.sequences.count == 0) return;
+  read_for(comparison.file.string() + ": sequences",
+           [&] { training.empty() ? add_sequences(comparison) : add_training_sequences(comparison); });
+}
+
 CompareResult compare(const CompareRequest& request) {
   Comparison comparison = read_comparison(request.file, request.short_form, request.overrides);
   comparison.kinds = request.kinds;
-  if (!comparison.sequences.training.empty())
-    add_training_sequences(comparison);
-  else if (comparison.sequences.count > 0)
-    add_sequences(comparison);
+  add_made_scenes(comparison);
   if (!comparison.split_text.empty()) say(request, comparison.split_text);
   const std::string program = program_key();
   make_folder(request.out);
