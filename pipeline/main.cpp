@@ -5,11 +5,13 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/library_message.hpp"
 #include "pipeline/host/process_threads.hpp"
 #include "pipeline/host/version.hpp"
@@ -74,7 +76,10 @@ int status_of_output(int status) {
 
 // Exit status: 0 well, 1 the result is not clean, 2 bad input or a missing package.
 int main(int argc, char** argv) {
-  set_up_threads(argv);
+  const std::optional<std::string> limited = limit_threads();
+  if (limited) std::cerr << "warning: " << *limited << "\n";
+  set_up_threads(argv, limited.has_value());
+  ignore_file_limit_signal();
   CLI::App app{"selvedge: a garment simulator with audited contact", "selvedge"};
   app.set_version_flag("--version", std::string(program_version()));
   app.require_subcommand(1);

@@ -18,11 +18,14 @@ double same_place(const Points& x) { return 1e-6 * (x.colwise().maxCoeff() - x.c
 }  // namespace
 
 std::vector<int> same_places(const Points& x) {
+  return x.rows() == 0 ? std::vector<int>() : same_places(x, same_place(x));
+}
+
+std::vector<int> same_places(const Points& x, double near) {
   const int n = static_cast<int>(x.rows());
   DisjointSets sets(n);
   if (n == 0) return {};
   const Eigen::RowVector3d low = x.colwise().minCoeff();
-  const double near = same_place(x);
   // Vertices sorted by cubes of this edge; neighbours are found by binary search. Cube numbers stay exact in doubles.
   using Cube = std::array<double, 3>;
   const auto cube_of = [&](int v) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "collision/geometry/counted.hpp"
 #include "physics/scene/joint_lists.hpp"
 #include "physics/scene/stepper.hpp"
 
@@ -13,10 +14,6 @@ std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
-}
-
-std::string count(long long n, const std::string& singular, const std::string& plural = "") {
-  return std::to_string(n) + " " + (n == 1 ? singular : plural.empty() ? singular + "s" : plural);
 }
 
 template <class Predicate>
@@ -68,7 +65,7 @@ bool wind_acts(const Scene& scene) {
 std::string why_bending(const Scene& scene, BendingModel model, bool in) {
   const std::string name = model == BendingModel::curvature ? "curvature form" : "hinge form";
   const int wanting = cloths_with(scene, [&](const Cloth& cloth) { return wants_bending(cloth, model); });
-  if (in) return name + ", " + count(wanting, "cloth") + " with bending > 0";
+  if (in) return name + ", " + counted(wanting, "cloth") + " with bending > 0";
   if (wanting > 0)
     return "left out, no cloth of the " + name + " has an inner " +
            (model == BendingModel::curvature ? "vertex" : "edge");
@@ -78,7 +75,7 @@ std::string why_bending(const Scene& scene, BendingModel model, bool in) {
 std::string why_self(const Scene& scene, bool in) {
   if (!scene.contact.self) return "left out by the user; the file is labelled self: not audited";
   if (!in) return "left out, the scene has no triangles of cloth";
-  return count(scene.surface.triangles.rows(), "triangle") + " of cloth can meet, thickness " +
+  return counted(scene.surface.triangles.rows(), "triangle") + " of cloth can meet, thickness " +
          number(scene.contact.thickness * 1e3) + " mm";
 }
 
@@ -131,12 +128,12 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
   const auto moving = std::ranges::count_if(scene.obstacles, [](const Obstacle& o) { return o.moving; });
   const int membranes = cloths_with(scene, has_membrane);
   const auto damping_why = [&](bool in, double Material::*rate) {
-    return in ? count(damped(rate), "cloth") + " with a rate > 0"
+    return in ? counted(damped(rate), "cloth") + " with a rate > 0"
               : std::string("left out, its rate is 0 in every cloth");
   };
   std::vector<PlanLine> lines{
       {"membrane", f.membrane,
-       f.membrane ? count(membranes, "cloth") + ", " + count(scene.surface.triangles.rows(), "triangle")
+       f.membrane ? counted(membranes, "cloth") + ", " + counted(scene.surface.triangles.rows(), "triangle")
                   : "left out, no cloth has a membrane stiffness > 0"},
       {"bending (curvature)", f.curvature_bending, why_bending(scene, BendingModel::curvature, f.curvature_bending)},
       {"bending (hinge)", f.hinge_bending, why_bending(scene, BendingModel::hinge, f.hinge_bending)},
@@ -148,19 +145,19 @@ std::vector<PlanLine> plan_lines(const Scene& scene) {
       {"mass damping", f.mass_damping, damping_why(f.mass_damping, &Material::mass_damping)},
       {"wind", f.wind, why_wind(scene, f.wind)},
       {"pins", f.pins,
-       f.pins ? count(static_cast<long long>(scene.pins.size()), "vertex", "vertices") + " held"
+       f.pins ? counted(static_cast<long long>(scene.pins.size()), "vertex", "vertices") + " held"
               : "left out, the scene has none"},
       {"obstacles", f.obstacles,
-       f.obstacles ? count(static_cast<long long>(scene.obstacles.size()), "obstacle")
+       f.obstacles ? counted(static_cast<long long>(scene.obstacles.size()), "obstacle")
                    : "left out, the scene has none"},
       {"moving obstacles", f.moving_obstacles,
-       f.moving_obstacles ? count(moving, "obstacle") + " moving" : "left out, no obstacle moves"},
+       f.moving_obstacles ? counted(moving, "obstacle") + " moving" : "left out, no obstacle moves"},
       {"self-contact", f.self_contact, why_self(scene, f.self_contact)},
       {"friction", f.friction, why_friction(scene, f)},
   };
   for_each_joint_list([&](auto list, const JointKind& kind) {
     const auto joints = std::ssize(scene.*list);
-    if (joints > 0) lines.push_back({kind.name, true, count(joints, kind.one, kind.many)});
+    if (joints > 0) lines.push_back({kind.name, true, counted(joints, kind.one, kind.many)});
   });
   return lines;
 }

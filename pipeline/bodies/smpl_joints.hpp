@@ -13,6 +13,7 @@ enum Joint {
   knee = 4,
   ankle = 7,
   foot = 10,
+  head = 15,
   shoulder = 16,
   elbow = 18,
   wrist = 20,

@@ -78,6 +78,30 @@ std::string trajectory_line(const std::filesystem::path& out) {
   return fmt::format("{:<20}{}\n", "trajectory", (out / "run.h5").string());
 }
 
+// Where a run begins.
+enum class Beginning { start, draping, checkpoint };
+
+// A folder without a checkpoint may have a draped start that was stopped. Without `auto` a resumed run needs one of
+// both.
+Beginning beginning_of(const SimulateArguments& arguments, const Setup& setup, const std::filesystem::path& out) {
+  if (arguments.resume.empty()) return Beginning::start;
+  if (std::filesystem::exists(out / "checkpoint.h5")) return Beginning::checkpoint;
+  if (setup.initial.frame < 0 && std::filesystem::exists(draping_file(out))) return Beginning::draping;
+  return arguments.resume == "auto" ? Beginning::start : Beginning::checkpoint;
+}
+
+// What `--resume=auto` has chosen.
+std::string beginning_text(Beginning begins, const std::filesystem::path& out) {
+  switch (begins) {
+    case Beginning::checkpoint:
+      return "goes on from " + (out / "checkpoint.h5").string() + "\n";
+    case Beginning::draping:
+      return "goes on with the draped start of " + draping_file(out).string() + "\n";
+    default:
+      return "starts: nothing to go on from in " + out.string() + "\n";
+  }
+}
+
 int simulate(const SimulateArguments& arguments, bool json) {
   const Setup setup = read_scene(arguments.scene);
   if (arguments.cache) read_tissue(cache_folder(), setup.bodies);
@@ -92,11 +116,14 @@ int simulate(const SimulateArguments& arguments, bool json) {
   const bool chooses = arguments.resume == "auto";
   if (const auto ended = chooses ? read_ended(out, run_inputs(setup)) : std::nullopt)
     return end_command(json, ended->text + trajectory_line(out), ended->summary, ended->clean);
-  const bool resumes = chooses ? std::filesystem::exists(out / "checkpoint.h5") : !arguments.resume.empty();
+  const Beginning begins = beginning_of(arguments, setup, out);
+  if (chooses) people(json) << beginning_text(begins, out);
   std::optional<Start> start;
-  if (!resumes) start = prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted);
-  if (!resumes && !start) {
-    people(json) << "stopped before the first frame\n";
+  if (begins != Beginning::checkpoint)
+    start = prepare(setup, InterruptWatch::interrupted, &progress, InterruptWatch::interrupted,
+                    KeptDraping{out, begins == Beginning::draping});
+  if (begins != Beginning::checkpoint && !start) {
+    people(json) << "stopped before the first frame; go on with --resume and the same arguments\n";
     return 1;
   }
   RunRequest request;

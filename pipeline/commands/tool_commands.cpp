@@ -3,8 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "collision/geometry/counted.hpp"
+#include "collision/geometry/error.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/config/config_units.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/run/progress.hpp"
 #include "pipeline/tools/ccd_report.hpp"
@@ -21,6 +24,14 @@
 namespace selvedge {
 namespace {
 
+// A length that an option gives [m].
+double read_distance(const std::string& text, const std::string& option) {
+  const Quantity length = read_quantity(text, Unit::length);
+  if (!length.problem.empty()) throw Error(length.problem, option + "=" + text, "for example " + option + "=0.1mm");
+  if (!(length.value > 0)) throw Error("is not above 0", option + "=" + text, "for example " + option + "=0.1mm");
+  return length.value;
+}
+
 struct ViewArguments {
   std::vector<std::filesystem::path> runs;
   std::filesystem::path out = "view.html";
@@ -30,11 +41,12 @@ struct ViewArguments {
 
 RunCommand check_command(CLI::App& command) {
   const auto request = std::make_shared<CheckRequest>();
-  command.add_option("file", request->file, "mesh (.obj, .ply) or trajectory (.h5)")->required();
+  command.add_option("file", request->file, "mesh (.obj, .ply), trajectory (.h5), or the folder of a run")->required();
   command.add_option("--rest", request->rest, "mesh of the same faces at rest, for the stretches");
   command.add_option("--body", request->bodies, "mesh that must not be touched; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--against", request->against, "trajectory of the same cloths: measures of papers against it");
+  command.add_option("--against", request->against,
+                     "trajectory, or run, of the same cloths: measures of papers against it");
   command.add_option("--audit", request->audit, "own, or fcl: FCL's opinion beside it")
       ->check(CLI::IsMember({"own", "fcl"}));
   command.add_option("--horizon", request->horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
@@ -51,7 +63,7 @@ RunCommand untangle_command(CLI::App& command) {
   command.add_option("--out", request->out, "where the untangled mesh goes (.obj, .ply)")->required();
   command.add_option("--body", request->bodies, "mesh to part from, stands still; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm");
+  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm, in");
   command.add_option("--layers", request->layers, "one number a piece of cloth, the innermost lowest")->delimiter(',');
   command.add_option("--iterations", request->iterations, "at most")->check(CLI::PositiveNumber);
   return [request](bool json) {
@@ -62,7 +74,7 @@ RunCommand untangle_command(CLI::App& command) {
       if (seconds_since(last) < (terminal ? 0.1 : 5)) return;
       last = Clock::now();
       const std::string line =
-          fmt::format("iteration {} of {}, {} pairs left", now.iteration, request->iterations, now.pairs);
+          fmt::format("iteration {} of {}, {} left", now.iteration, request->iterations, counted(now.pairs, "pair"));
       std::cerr << (terminal ? "\r" + line + "\033[K" : line + "\n") << std::flush;
     };
     const UntangleReport report = untangle_mesh(shown);
@@ -97,7 +109,12 @@ RunCommand dress_command(CLI::App& command) {
   const auto request = std::make_shared<DressRequest>();
   command.add_option("mesh", request->mesh, "garment where the body wears it (.obj, .ply)")->required();
   command.add_option("--out", request->out, "the garment for scenes (.h5)")->required();
-  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm");
+  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm, in; left out: guessed from the body");
+  const auto up = std::make_shared<std::string>();
+  command.add_option("--up", *up, "axis of the mesh that points up; left out: guessed from the body")
+      ->check(CLI::IsMember({"y", "z"}));
+  const auto weld = std::make_shared<std::string>();
+  command.add_flag("--weld", *weld, "join pieces where their borders meet; --weld=0.1mm: within that distance");
   command.add_option("--body", request->body, "mannequin, or a file (.npz, .h5)");
   command.add_option("--shape", request->shape, "of that body: coefficients")->delimiter(',');
   command.add_option("--pose", request->pose, "clip that the body stands in: a name, .bvh or .npz (zero pose)");
@@ -106,10 +123,12 @@ RunCommand dress_command(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option("--fit", request->fit, "tight: weights of the nearest vertex; loose: averaged")
       ->check(CLI::IsMember({"tight", "loose"}));
-  command.add_flag("--weld", request->weld, "join vertices at one place, as along seams of textures");
   command.add_option("--pin", request->pins, "group that stays with the body, or none; may be given again")
       ->allow_extra_args(false);
-  return [request](bool json) {
+  return [request, up, weld](bool json) {
+    if (!up->empty()) request->up = *up == "z" ? Up::z : Up::y;
+    request->weld = !weld->empty();
+    if (request->weld && *weld != "true") request->weld_within = read_distance(*weld, "--weld");
     const DressReport report = dress(*request);
     return end_command(json, dress_text(report), dress_json(report), is_clean(report));
   };
@@ -129,9 +148,9 @@ RunCommand pattern_command(CLI::App& command) {
   return [request](bool json) {
     PatternRequest followed = *request;
     followed.progress = [](const SewingFrame& frame) {
-      std::cerr << fmt::format("{} {:.2f} s: gaps {:.3g} mm, {:.3g} % move, {} pairs\n",
-                               frame.sewn ? "draping" : "sewing", frame.time, 1e3 * frame.largest_gap,
-                               100 * frame.moving_share, frame.report->collision.pairs_after);
+      std::cerr << fmt::format("{} {:.2f} s: gaps {:.3g} mm, {:.3g} % move, {}\n", frame.sewn ? "draping" : "sewing",
+                               frame.time, 1e3 * frame.largest_gap, 100 * frame.moving_share,
+                               counted(frame.report->collision.pairs_after, "pair"));
     };
     const PatternReport report = sew_garment(followed);
     return end_command(json, pattern_text(report), pattern_json(report), request->flat || is_clean(report));
@@ -147,14 +166,18 @@ RunCommand body_command(CLI::App& command) {
   command.add_option("--skeleton", request->skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
   command.add_option("--weights", request->weights, "of the mesh, as MakeHuman has them (.mhw)");
   command.add_option("--joints", request->joints, "where the joints of a mesh are that has neither (.yaml)");
-  command.add_option("--unit", request->unit, "of the mesh: m, dm, cm, mm");
+  command.add_option("--unit", request->unit, "of the mesh: m, dm, cm, mm, in");
+  const auto up = std::make_shared<std::string>("y");
+  command.add_option("--up", *up, "axis of the mesh, and of --joints, that points up")
+      ->check(CLI::IsMember({"y", "z"}));
   command
       .add_option("--mesh", request->meshes.only, "mesh of glTF, or group, that becomes the body; may be given again")
       ->allow_extra_args(false);
   command.add_option("--without", request->meshes.without, "mesh or group that does not; may be given again")
       ->allow_extra_args(false);
   command.add_option("--out", request->out, "where the body goes (.h5)")->required();
-  return [request](bool json) {
+  return [request, up](bool json) {
+    request->up = *up == "z" ? Up::z : Up::y;
     const BodyReport report = convert_body(*request);
     return end_command(json, body_text(report), body_json(report), true);
   };
@@ -208,7 +231,8 @@ RunCommand export_command(CLI::App& command) {
     progress.end();
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const std::filesystem::path& file : written) list.push_back(file.string());
-    return end_command(json, fmt::format("{} files, the last is {}\n", list.size(), written.back().string()),
+    return end_command(json,
+                       fmt::format("{}, the last is {}\n", counted(std::ssize(list), "file"), written.back().string()),
                        json_text({{"files", list}}), true);
   };
 }

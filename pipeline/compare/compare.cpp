@@ -171,7 +171,9 @@ bool report_drapes(const CompareWork& work, const std::filesystem::path& out, Co
   result.views = out / "views";
   std::vector<MeasuredDrapes> all;
   for (const ComparedDrapes& one : work.comparison.drapes) {
-    std::optional<MeasuredDrapes> made = measured_drapes(one, result.views, work.request.log, work.request.stop);
+    std::optional<MeasuredDrapes> made = read_for(work.comparison.file.string() + ": drapes `" + one.name + "`", [&] {
+      return measured_drapes(one, result.views, work.request.log, work.request.stop);
+    });
     if (!made) return false;
     if (!made->rows.empty()) write_file(out / (one.name + ".csv"), drape_table_csv(made->rows));
     all.push_back(std::move(*made));
@@ -182,6 +184,14 @@ bool report_drapes(const CompareWork& work, const std::filesystem::path& out, Co
   return true;
 }
 
+// The scenes of `sequences`, if there are any.
+void add_made_scenes(Comparison& comparison) {
+  const std::string& training = comparison.sequences.training;
+  if (training.empty() && comparison.sequences.count == 0) return;
+  read_for(comparison.file.string() + ": sequences",
+           [&] { training.empty() ? add_sequences(comparison) : add_training_sequences(comparison); });
+}
+
 std::shared_ptr<CompareWork> read_work(const CompareRequest& request) {
   auto work = std::make_shared<CompareWork>();
   work->request = request;
@@ -189,10 +199,7 @@ std::shared_ptr<CompareWork> read_work(const CompareRequest& request) {
   Comparison& comparison = work->comparison;
   comparison = read_comparison(request.file, request.short_form, request.overrides);
   comparison.kinds = request.kinds;
-  if (!comparison.sequences.training.empty())
-    add_training_sequences(comparison);
-  else if (comparison.sequences.count > 0)
-    add_sequences(comparison);
+  add_made_scenes(comparison);
   for (const CompareScene& scene : comparison.scenes) work->names.push_back(cell_name(scene.name));
   number_equal_names(work->names);
   work->scenes.resize(comparison.scenes.size());

@@ -16,12 +16,11 @@ namespace {
 
 constexpr int shapes = 20;  // of bodies, among which tangled starts are looked for
 
-Outfit outfit_of(const Comparison& comparison, const std::string& name) {
+Outfit outfit_of(const std::string& name) {
   const std::vector<Outfit> all = read_wardrobe(config_folder() / "outfits.yaml").outfits;
   const auto found = std::ranges::find(all, name, &Outfit::name);
   if (found != all.end()) return *found;
-  throw Error("`sequences` names the unknown outfit `" + name + "`", comparison.file.string(),
-              "outfits: " + joined(names_of(all)));
+  throw Error("names the unknown outfit `" + name + "`", "`outfits`", "outfits: " + joined(names_of(all)));
 }
 
 RollMaker maker_of(const SequenceOptions& sequences, const Outfit& outfit) {
@@ -54,10 +53,10 @@ void check_bodies_unseen(const Comparison& comparison) {
     if (!kind || kind->network != NetworkUse::alone || !std::filesystem::exists(setting.weights)) continue;
     for (const auto& [name, value] : read_weight_file(setting.weights).origin)
       if (name == "seed" && value == seed)
-        throw Error(fmt::format("`sequences.seed` {} is the seed with which {} was trained: the row `{}` would start "
-                                "from bodies of its training",
+        throw Error(fmt::format("{} is the seed with which {} was trained: the row `{}` would start from bodies of its "
+                                "training",
                                 seed, setting.weights.filename().string(), setting.name),
-                    comparison.file.string(), "give another `sequences.seed`");
+                    "`seed`", "give another `sequences.seed`");
   }
 }
 
@@ -84,7 +83,7 @@ void make_tangled(const SequenceOptions& sequences, RollMaker& maker, int number
 void add_sequences(Comparison& comparison) {
   const SequenceOptions& sequences = comparison.sequences;
   if (sequences.outfits.empty() || sequences.clips.empty() || sequences.file.empty())
-    throw Error("`sequences` lacks its scene file, outfits or clips", comparison.file.string(), "give all three");
+    throw Error("lacks its scene file, outfits or clips", "`sequences`", "give all three");
   if (sequences.tangled > 0) check_bodies_unseen(comparison);
   const auto outfits = static_cast<int>(sequences.outfits.size()), clips = static_cast<int>(sequences.clips.size());
   std::vector<std::optional<RollMaker>> makers(sequences.outfits.size());
@@ -92,7 +91,7 @@ void add_sequences(Comparison& comparison) {
   for (int n = 0; n < sequences.count; ++n) {
     const auto which = static_cast<std::size_t>(n % outfits);
     const int clip = n / outfits % clips;
-    const Outfit outfit = outfit_of(comparison, sequences.outfits[which]);
+    const Outfit outfit = outfit_of(sequences.outfits[which]);
     CompareScene scene;
     scene.file = comparison.file.parent_path() / sequences.file;
     scene.outfit = outfit.name;

@@ -162,7 +162,7 @@ void add_training_sequences(Comparison& comparison) {
   const SequenceOptions& sequences = comparison.sequences;
   const std::filesystem::path folder = comparison.file.parent_path(), training = folder / sequences.training;
   if (sequences.file.empty())
-    throw Error("`sequences` lacks its scene file", comparison.file.string(),
+    throw Error("lacks its scene file", "`sequences`",
                 "give a scene with one garment on a body `person`, such as configs/evaluation/garment.yaml");
   const TrainingSequences from{comparison, read_config(folder / sequences.file, scene_section()),
                                read_training(training), split_named(sequences.split)};

@@ -4,7 +4,7 @@ namespace selvedge::table {
 
 Key unit_key() {
   return with_words(number("unit", Unit::length, positive, "m", "Length of one unit of the file."),
-                    {"m", "dm", "cm", "mm"});
+                    {"m", "dm", "cm", "mm", "in"});
 }
 
 std::vector<Key> placement_keys() {
@@ -27,13 +27,24 @@ Key interpolation_key() {
               "and last keyframe.");
 }
 
+Key weld_key() {
+  return flag(
+      "weld", false,
+      "Joins pieces of a mesh where their borders meet along an edge, vertex by vertex. Vertices that remain are "
+      "renumbered in their order. Where more than two triangles would meet in an edge, or pieces meet in a "
+      "point, vertices stay apart, with a warning.");
+}
+
+Key weld_within_key() {
+  return number("weld_within", Unit::length, positive, "",
+                "Distance within which `weld` takes vertices for one. Default: a thousandth of the mean edge, or a "
+                "millionth of the mesh's size where that is more.");
+}
+
 const Section& mesh_section() {
   static const Section table{"mesh",
                              "An OBJ or PLY file. The names of its `o` and `g` lines become vertex groups.",
-                             {needed(path("file", "The OBJ or PLY file.")), unit_key(),
-                              flag("weld", false,
-                                   "Merges vertices that lie at one place, within a millionth of the mesh's size. The "
-                                   "vertices that remain are renumbered in their order.")},
+                             {needed(path("file", "The OBJ or PLY file.")), unit_key(), weld_key(), weld_within_key()},
                              "file"};
   return table;
 }

@@ -101,6 +101,8 @@ inline std::vector<Key> operator+(std::vector<Key> a, const std::vector<Key>& b)
 }
 
 Key unit_key();  // of a file
+Key weld_key();
+Key weld_within_key();
 std::vector<Key> placement_keys();
 Key edge_key(const std::string& otherwise);
 Key interpolation_key();

@@ -24,6 +24,7 @@ constexpr std::array symbols = {
     Symbol{"dm", Unit::length, 0.1},
     Symbol{"cm", Unit::length, 0.01},
     Symbol{"mm", Unit::length, 0.001},
+    Symbol{"in", Unit::length, 0.0254},
     Symbol{"m3", Unit::volume, 1},
     Symbol{"l", Unit::volume, 1e-3},
     Symbol{"cm3", Unit::volume, 1e-6},

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
@@ -35,17 +36,19 @@ Points read_points(const h5::File& file, const std::string& name, double most) {
   return points;
 }
 
-double read_time(const h5::File& file) {
+double read_time(const h5::File& file, bool may_be_negative) {
   double value = 0;
   file.read_all("time", H5T_NATIVE_DOUBLE, {1}, &value);
-  if (!(value >= 0 && value <= longest_run)) throw_unfit(file.path(), "time", fmt::format("is {:g} s", value));
+  if (!(value >= (may_be_negative ? -longest_run : 0) && value <= longest_run))
+    throw_unfit(file.path(), "time", fmt::format("is {:g} s", value));
   return value;
 }
 
-int read_whole(const h5::File& file, const std::string& name, int most) {
+int read_whole(const h5::File& file, const std::string& name, int most, int least = 0) {
   int value = 0;
   file.read_all(name, H5T_NATIVE_INT, {1}, &value);
-  if (value < 0 || value > most) throw_unfit(file.path(), name, fmt::format("is {}, not from 0 to {}", value, most));
+  if (value < least || value > most)
+    throw_unfit(file.path(), name, fmt::format("is {}, not from {} to {}", value, least, most));
   return value;
 }
 
@@ -164,7 +167,7 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
   });
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& path) {
+Checkpoint read_checkpoint(const std::filesystem::path& path, int first_frame) {
   if (!std::filesystem::exists(path))
     throw Error(
         "there is nothing to resume: no checkpoint", path.string(),
@@ -174,8 +177,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   Checkpoint read;
   read_inputs(file, read);
   State& state = read.state;
-  state.time = read_time(file);
-  state.frame = read_whole(file, "frame", std::numeric_limits<int>::max());
+  state.time = read_time(file, first_frame < 0);
+  state.frame = read_whole(file, "frame", std::numeric_limits<int>::max(), first_frame);
   state.pinched = read_whole(file, "pinched", 1) != 0;
   state.clean = read_whole(file, "clean", 1) != 0;
   state.x = read_points(file, "x", farthest_place);
@@ -194,7 +197,8 @@ void check_fits(const std::filesystem::path& path, const State& state, const Sce
   rows("v", state.v.rows(), scene.surface.vertex_count, "the cloth of the scene");
   if (state.obstacles.size() != scene.obstacles.size())
     throw_unfit(path, "obstacle_*",
-                fmt::format("are {} obstacles, the scene has {}", state.obstacles.size(), scene.obstacles.size()));
+                fmt::format("are {}, the scene has {}", counted(std::ssize(state.obstacles), "obstacle"),
+                            scene.obstacles.size()));
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     rows(numbered("obstacle_", k), state.obstacles[k].rows(), scene.obstacles[k].surface.vertex_count,
          "obstacle `" + scene.obstacles[k].name + "` of the scene");

@@ -34,8 +34,9 @@ struct Checkpoint {
 void write_checkpoint(const std::filesystem::path&, const State&, const RunInputs&);
 
 // Throws Error, with file and field, if there is no checkpoint or it is damaged: arrays whose types, shapes or lengths
-// do not match, numbers that are not finite or out of range for any scene.
-Checkpoint read_checkpoint(const std::filesystem::path&);
+// do not match, numbers that are not finite or out of range for any scene, and a frame before `first_frame`, which is
+// below 0 for draped starts.
+Checkpoint read_checkpoint(const std::filesystem::path&, int first_frame = 0);
 
 // Throws Error, with the field, its value and that of the scene, unless the state has as many vertices, obstacles and
 // triangles as the scene.

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/same_places.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/library_message.hpp"
@@ -341,7 +342,7 @@ void join_vertices(const Document& file, const std::string& name, GltfScene& sce
                    const std::vector<Eigen::Triplet<double>>& weights) {
   const Eigen::Index as_read = scene.mesh.x.rows();
   if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
-  weld(scene.mesh, name);
+  join_at(same_places(scene.mesh.x), scene.mesh, name);
   const std::vector<int>& welded = scene.mesh.welded;
   std::vector<int> lowest(static_cast<std::size_t>(scene.mesh.x.rows()), -1);
   std::vector<Eigen::Triplet<double>> kept;

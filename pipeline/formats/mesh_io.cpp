@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/surface.hpp"
 #include "pipeline/formats/mesh_obj.hpp"
@@ -33,9 +34,10 @@ void note_topology(Mesh& mesh, const std::string& name) {
   const Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
   if (surface.nonmanifold_edges > 0)
     mesh.warnings.push_back(
-        fmt::format("{}: {} non-manifold edges (more than two triangles)", name, surface.nonmanifold_edges));
+        fmt::format("{}: {} (more than two triangles)", name, counted(surface.nonmanifold_edges, "non-manifold edge")));
   if (surface.isolated_vertices > 0)
-    mesh.warnings.push_back(fmt::format("{}: {} isolated vertices (in no triangle)", name, surface.isolated_vertices));
+    mesh.warnings.push_back(fmt::format("{}: {} (in no triangle)", name,
+                                        counted(surface.isolated_vertices, "isolated vertex", "isolated vertices")));
 }
 
 }  // namespace
@@ -59,8 +61,11 @@ void leave_out_repeated(Mesh& mesh, const std::string& name) {
   std::sort(kept.begin(), kept.end());
   keep_rows(mesh.uv_triangles, kept);
   keep_rows(mesh.triangles, kept);
-  if (degenerate > 0) mesh.warnings.push_back(fmt::format("{}: {} degenerate triangles left out", name, degenerate));
-  if (duplicate > 0) mesh.warnings.push_back(fmt::format("{}: {} duplicate triangles left out", name, duplicate));
+  if (degenerate > 0)
+    mesh.warnings.push_back(fmt::format("{}: {} left out", name, counted(degenerate, "degenerate triangle")));
+  if (duplicate > 0)
+    mesh.warnings.push_back(
+        fmt::format("{}: {} left out", name, counted(static_cast<int>(duplicate), "duplicate triangle")));
 }
 
 bool same_triangles(const Triangles& a, const Triangles& b) { return a.rows() == b.rows() && a == b; }

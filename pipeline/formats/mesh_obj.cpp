@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/formats/line_words.hpp"
@@ -277,8 +278,9 @@ Mesh parse_obj(std::string_view text, const std::string& name) {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   }
   for (const auto& [word, count] : p.unknown)
-    mesh.warnings.push_back(
-        fmt::format("{}: {} lines begin with the unknown word `{}` and are left out", name, count, word));
+    mesh.warnings.push_back(fmt::format("{}: {} with the unknown word `{}` and {} left out", name,
+                                        counted(count, "line begins", "lines begin"), word,
+                                        by_number(count, "is", "are")));
   return mesh;
 }
 

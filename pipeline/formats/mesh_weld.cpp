@@ -2,7 +2,12 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "collision/geometry/counted.hpp"
+#include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
+#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 
 namespace selvedge {
@@ -22,13 +27,75 @@ void renumber(const std::vector<int>& numbers, int count, Mesh& mesh) {
   }
 }
 
+int lower_elsewhere(const std::vector<int>& stands_for) {
+  int count = 0;
+  for (std::size_t v = 0; v < stands_for.size(); ++v) count += stands_for[v] != static_cast<int>(v);
+  return count;
+}
+
+double largest_extent(const Points& x) { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
+
+// Of each vertex the one that it is joined into, and what that comes to.
+struct Joining {
+  std::vector<int> stands_for;
+  Welding count;
+};
+
+Joining joining_of(const Points& x, const Surface& surface, double distance) {
+  const std::vector<int> places = same_places(x, distance);
+  Joining result;
+  if (std::optional<WeldedSurface> welded = welded_surface(surface, places)) {
+    result.stands_for = std::move(welded->joined);
+  } else {
+    result.stands_for.resize(places.size());
+    for (std::size_t v = 0; v < places.size(); ++v) result.stands_for[v] = static_cast<int>(v);
+  }
+  result.count.joined = lower_elsewhere(result.stands_for);
+  result.count.apart = lower_elsewhere(places) - result.count.joined;
+  return result;
+}
+
+double distance_of(const Points& x, const Surface& surface) {
+  return std::max(1e-3 * mean_edge(surface, x), 1e-6 * largest_extent(x));
+}
+
+Surface surface_of(const Points& x, const Triangles& triangles) {
+  return make_surface(static_cast<int>(x.rows()), triangles);
+}
+
 }  // namespace
 
-int coincident_vertices(const Points& x) {
-  const std::vector<int> places = same_places(x);
-  int count = 0;
-  for (std::size_t v = 0; v < places.size(); ++v) count += places[v] != static_cast<int>(v);
-  return count;
+int coincident_vertices(const Points& x) { return lower_elsewhere(same_places(x)); }
+
+double weld_distance(const Points& x, const Triangles& triangles) { return distance_of(x, surface_of(x, triangles)); }
+
+Welding weldable(const Points& x, const Triangles& triangles, std::optional<double> distance) {
+  const Surface surface = surface_of(x, triangles);
+  return joining_of(x, surface, distance.value_or(distance_of(x, surface))).count;
+}
+
+std::string unwelded_text(int joined, const std::string& cure) {
+  return fmt::format("the seams are not welded: {} joins {}", cure, counted(joined, "vertex", "vertices"));
+}
+
+Welding weld(Mesh& mesh, const std::string& name, std::optional<double> distance) {
+  const Surface before = surface_of(mesh.x, mesh.triangles);
+  if (const double edge = mean_edge(before, mesh.x); distance && *distance > 0.5 * edge)
+    throw Error(fmt::format("is to be welded within {:g} of its units, and its edges are {:.3g} long on average",
+                            *distance, edge),
+                name, "give a distance below half of that, or none: the default is a thousandth of it");
+  const Joining joining = joining_of(mesh.x, before, distance.value_or(distance_of(mesh.x, before)));
+  join_at(joining.stands_for, mesh, name);
+  const int crowded = surface_of(mesh.x, mesh.triangles).nonmanifold_edges;
+  if (crowded > before.nonmanifold_edges)
+    throw Error(fmt::format("cannot be welded: {} would have more than two triangles",
+                            counted(crowded - before.nonmanifold_edges, "edge")),
+                name, "remove triangles that lie on others, in the program that made the mesh");
+  if (joining.count.apart > 0)
+    mesh.warnings.push_back(fmt::format(
+        "{}: {} not welded: pieces meet there in a point, or in more than two triangles an edge", name,
+        counted(joining.count.apart, "vertex at the place of another is", "vertices at the places of others are")));
+  return joining.count;
 }
 
 void renumber_look(const std::vector<int>& numbers, Mesh& mesh) {
@@ -37,12 +104,11 @@ void renumber_look(const std::vector<int>& numbers, Mesh& mesh) {
   renumber(numbers, mesh.look);
 }
 
-void weld(Mesh& mesh, const std::string& name) {
-  const std::vector<int> places = same_places(mesh.x);
-  mesh.welded.assign(places.size(), 0);
+void join_at(const std::vector<int>& stands_for, Mesh& mesh, const std::string& name) {
+  mesh.welded.assign(stands_for.size(), 0);
   int count = 0;
-  for (std::size_t v = 0; v < places.size(); ++v)
-    mesh.welded[v] = places[v] == static_cast<int>(v) ? count++ : mesh.welded[places[v]];
+  for (std::size_t v = 0; v < stands_for.size(); ++v)
+    mesh.welded[v] = stands_for[v] == static_cast<int>(v) ? count++ : mesh.welded[stands_for[v]];
   renumber_look(mesh.welded, mesh);
   renumber(mesh.welded, count, mesh);
   leave_out_repeated(mesh, name);

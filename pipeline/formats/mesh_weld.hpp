@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
@@ -10,9 +14,31 @@ int coincident_vertices(const Points& x);
 // Before vertices are joined: numbers[v] is the number that v gets. The look keeps the vertices and faces of the file.
 void renumber_look(const std::vector<int>& numbers, Mesh&);
 
-// Joins vertices at one place into the lowest of them and numbers vertices anew in their order. Triangles that lose
-// their area are removed and counted in a warning. Sets Mesh::welded.
-void weld(Mesh&, const std::string& name);
+// What becomes of vertices that lie at the place of a lower one.
+struct Welding {
+  int joined = 0;  // become one with a lower one
+  int apart = 0;   // stay: their pieces do not meet along an edge there, or an edge would get more than two triangles
+};
+
+// The distance within which `weld` takes vertices for one where none is given: a thousandth of the mean edge, or a
+// millionth of the bounding box's diagonal where that is more.
+double weld_distance(const Points& x, const Triangles&);
+
+// What `weld` would come to, with the mesh as it is.
+Welding weldable(const Points& x, const Triangles&, std::optional<double> distance = {});
+
+// "the seams are not welded: --weld joins 312 vertices". `cure`: what joins them.
+std::string unwelded_text(int joined, const std::string& cure);
+
+// Joins the borders of pieces along the edges where exactly two triangles meet within a distance (in the mesh's own
+// unit; default: weld_distance). A vertex becomes the lowest of those that it is joined with, and vertices are numbered
+// anew in their order. Triangles that lose their area are removed and counted in a warning; vertices that have to stay
+// apart are counted in another. `name` is the mesh's. Sets Mesh::welded. Throws Error for a distance above half the
+// mean edge, and where triangles at one place would make an edge of more than two triangles.
+Welding weld(Mesh&, const std::string& name, std::optional<double> distance = {});
+
+// Joins each vertex into the one that stands for it, the lowest of its set, as `weld` does, without looking at edges.
+void join_at(const std::vector<int>& stands_for, Mesh&, const std::string& name);
 
 // Joins the same vertices in another mesh with the same vertices and faces.
 void weld_as(const Mesh& welded, Mesh&);

@@ -9,10 +9,9 @@
 
 namespace selvedge {
 
-// How the program makes a garment. Members are described where keys are bound to them:
-// pipeline/scene/config_garment.cpp.
+// How the program makes a garment.
 struct GarmentOptions {
-  double edge = 0.02;
+  double edge = 0.02;  // edge length [m]
   double gap = 0.008;  // distance of a garment from those under it [m]
 };
 

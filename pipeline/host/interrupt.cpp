@@ -37,4 +37,6 @@ InterruptWatch::~InterruptWatch() { handle(SIG_DFL); }
 
 bool InterruptWatch::interrupted() { return noted != 0; }
 
+void ignore_file_limit_signal() { std::signal(SIGXFSZ, SIG_IGN); }
+
 }  // namespace selvedge

@@ -13,4 +13,8 @@ class InterruptWatch {
   static bool interrupted();
 };
 
+// From now on a write beyond the largest size that files may have (`ulimit -f`) fails as one on a full disk does; the
+// system's signal would end the program in the middle of it.
+void ignore_file_limit_signal();
+
 }  // namespace selvedge

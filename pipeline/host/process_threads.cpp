@@ -6,10 +6,14 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <system_error>
 #include <thread>
+
+#include <fmt/format.h>
+
+#include "collision/geometry/counted.hpp"
+#include "collision/geometry/parallel.hpp"
 
 namespace selvedge {
 namespace {
@@ -25,25 +29,23 @@ bool asks_for_more_than(long long most, const char* list) {
   return false;
 }
 
-// Takes back a request for absurdly many threads, whose stacks alone would end the program. Returns whether there was
-// one.
-bool refuse_too_many_threads() {
-  const long long processors = std::max(1u, std::thread::hardware_concurrency());
-  const long long most = std::max<long long>(64, 8 * processors);
-  const char* asked = std::getenv("OMP_NUM_THREADS");
-  if (!asked || !asks_for_more_than(most, asked)) return false;
-  std::cerr << "warning: OMP_NUM_THREADS=" << asked << " is more than " << most << " threads: " << processors
-            << " are used, one a processor\n";
-  setenv("OMP_NUM_THREADS", std::to_string(processors).c_str(), 1);
-  return true;
-}
-
 }  // namespace
 
-void set_up_threads(char** arguments) {
-  const bool too_many = refuse_too_many_threads();
+std::optional<std::string> limit_threads() {
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const long long most = std::max<long long>(64, 8LL * processors);
+  const char* set = std::getenv("OMP_NUM_THREADS");
+  if (!set || !asks_for_more_than(most, set)) return {};
+  const std::string asked = set;
+  setenv("OMP_NUM_THREADS", std::to_string(processors).c_str(), 1);
+  use_threads(processors);
+  return fmt::format("OMP_NUM_THREADS={} is more than {} threads: {} used, one a processor", asked, most,
+                     counted(processors, "is", "are"));
+}
+
+void set_up_threads(char** arguments, bool limited) {
   const bool waits = std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT");
-  if (!too_many && waits && std::getenv("OPENBLAS_NUM_THREADS")) return;
+  if (!limited && waits && std::getenv("OPENBLAS_NUM_THREADS")) return;
   if (!waits) setenv("GOMP_SPINCOUNT", "10000", 0);
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
   // By its path, so that lists of processes show its name; or as it runs, where its file is gone. Comes back only if

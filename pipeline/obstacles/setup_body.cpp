@@ -17,6 +17,7 @@
 #include "pipeline/bodies/mannequin.hpp"
 #include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
+#include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/motions/clip_amass.hpp"
@@ -194,6 +195,7 @@ Performance read_figure(const Config& section, const std::filesystem::path& fold
   Performance who;
   who.body = read_model(section["model"], folder);
   turn_outward(section["model"].text(), who.body, who.warnings);
+  warn_of_axis(section["model"].text(), who.body, who.warnings);
   who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
   if (std::optional<WeldedSurface> welded = welded_surface(who.surface, same_places(who.body.skin)))
     std::tie(who.surface, who.joined) = std::pair(std::move(welded->surface), std::move(welded->joined));

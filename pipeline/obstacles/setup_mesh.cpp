@@ -1,5 +1,8 @@
 #include "pipeline/obstacles/setup_mesh.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "pipeline/formats/mesh_io.hpp"
@@ -13,6 +16,14 @@ namespace {
 
 constexpr double smallest = 0.01;  // least diagonal of a cloth or a body [m]
 
+// The unit, a power of ten, that brings an extent [m] nearest to a metre, and the extent in it.
+std::string likely_unit(double extent) {
+  const double unit = std::pow(10.0, -std::round(std::log10(std::max(extent, 1e-9))));
+  const std::string word = fmt::format("{:g} m", unit);
+  const std::string name = word == "0.1 m" ? "dm" : word == "0.01 m" ? "cm" : word == "0.001 m" ? "mm" : word;
+  return fmt::format("`unit: {}` makes it {:.3g} m", name, unit * extent);
+}
+
 }  // namespace
 
 Mesh read_mesh_section(const Config& section, const std::filesystem::path& folder) {
@@ -20,8 +31,16 @@ Mesh read_mesh_section(const Config& section, const std::filesystem::path& folde
   Mesh mesh = read_mesh(file);
   mesh.x *= read_unit(section["unit"]);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
-  if (section["weld"].flag()) weld(mesh, file.string());
+  read_weld(section, file.string(), mesh);
   return mesh;
+}
+
+void read_weld(const Config& section, const std::string& name, Mesh& mesh) {
+  const Config& within = section["weld_within"];
+  if (section["weld"].flag())
+    weld(mesh, name, within.given ? std::optional(within.number()) : std::nullopt);
+  else if (within.given)
+    within.fail("is given without `weld`", "write weld: true, or leave it out");
 }
 
 void refuse_far(const Config& at, const std::string& noun, const Points& x) {
@@ -37,7 +56,7 @@ void warn_of_extent(const Config& at, const std::string& noun, double largest, c
   const double extent = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
   if (at["unit"].given || (extent <= largest && extent >= smallest)) return;
   warnings.push_back(fmt::format("{} spans {:.3g} m; if its file is not in metres, say so by the key `unit` ({})", noun,
-                                 extent, extent > largest ? "unit: cm" : "unit: 10 m"));
+                                 extent, likely_unit(extent)));
 }
 
 }  // namespace selvedge

@@ -10,6 +10,9 @@ namespace selvedge {
 // The mesh that a `mesh` section names, in metres, welded if the section asks for it. `folder` is the scene file's.
 Mesh read_mesh_section(const Config& section, const std::filesystem::path& folder);
 
+// Joins the pieces of a mesh in metres where the section's key `weld` asks for it. `name` is the mesh's.
+void read_weld(const Config& section, const std::string& name, Mesh&);
+
 // Throws Error, naming the vertex and where it is, for a position that is not finite or farther from the origin than
 // bounds.hpp allows. `at`: the value from which they were read; `noun`: what has these positions.
 void refuse_far(const Config& at, const std::string& noun, const Points& x);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/read_file.hpp"
@@ -65,6 +66,26 @@ bool same_matrix(const Matrix& a, const Matrix& b) {
   return a.rows() == b.rows() && a == b;
 }
 
+// Compares a state that was kept with the scene, as far as it can be used.
+void check_kept_state(const std::filesystem::path& saved, const Checkpoint& checkpoint, const Setup& setup,
+                      const RunInputs& inputs) {
+  check_config(saved, checkpoint.inputs.config, inputs.config);
+  if (checkpoint.knows_files) check_input_files(saved, checkpoint.inputs.files, inputs.files, "the scene");
+  check_fits(saved, checkpoint.state, setup.scene);
+  if (const auto problem = misfit(checkpoint.state.memory, setup.scene)) refuse(saved, "memory_*", *problem);
+  check_moment(saved, checkpoint.state, setup.run);
+  check_cut_out(saved, checkpoint.state, setup.initial);
+}
+
+void check_kept_scene(const std::filesystem::path& saved, const Checkpoint& checkpoint, const RunInputs& inputs) {
+  if (!checkpoint.knows_files)
+    refuse(saved, "input_hashes", "is missing: an earlier version of this program wrote the checkpoint");
+  if (checkpoint.inputs.scene != inputs.scene)
+    refuse(saved, "scene_hash",
+           "is of another scene: what code makes, or the program keeps in its cache, or a file that another file names "
+           "has changed since the run began");
+}
+
 // Compares constants of a trajectory with those of the scene.
 struct TrajectoryCheck {
   const std::filesystem::path& file;
@@ -104,7 +125,8 @@ struct TrajectoryCheck {
 void check_last_frame(const std::filesystem::path& file, const TrajectoryReader& reader, const State& state) {
   if (reader.frame_count() <= state.frame)
     refuse(file, "frames_complete",
-           fmt::format("counts {} frames, the checkpoint was made after frame {}", reader.frame_count(), state.frame));
+           fmt::format("counts {}, the checkpoint was made after frame {}", counted(reader.frame_count(), "frame"),
+                       state.frame));
   const Frame last = reader.frame(state.frame);
   const std::string cure = "run without --resume: checkpoint and trajectory are of different runs";
   const std::string at = fmt::format("frame {}", state.frame);
@@ -141,13 +163,7 @@ ResumedRun read_resumed(const std::filesystem::path& folder, const Setup& setup,
                         const RunInputs& inputs) {
   const std::filesystem::path saved = folder / "checkpoint.h5", file = folder / "run.h5";
   Checkpoint checkpoint = read_checkpoint(saved);
-  check_config(saved, checkpoint.inputs.config, inputs.config);
-  if (checkpoint.knows_files) check_input_files(saved, checkpoint.inputs.files, inputs.files, "the scene");
-  check_fits(saved, checkpoint.state, setup.scene);
-  if (const auto problem = misfit(checkpoint.state.memory, setup.scene)) refuse(saved, "memory_*", *problem);
-  check_moment(saved, checkpoint.state, setup.run);
-  check_cut_out(saved, checkpoint.state, setup.initial);
-
+  check_kept_state(saved, checkpoint, setup, inputs);
   auto reader = std::make_unique<TrajectoryReader>(file);
   const TrajectoryInfo wanted = trajectory_info(setup.scene, setup.config, traits.name, setup.run.fps);
   const TrajectoryCheck check{file};
@@ -158,13 +174,16 @@ ResumedRun read_resumed(const std::filesystem::path& folder, const Setup& setup,
   check_config(file, reader->info().config, wanted.config);
   check_last_frame(file, *reader, checkpoint.state);
 
-  if (!checkpoint.knows_files)
-    refuse(saved, "input_hashes", "is missing: an earlier version of this program wrote the checkpoint");
-  if (checkpoint.inputs.scene != inputs.scene)
-    refuse(saved, "scene_hash",
-           "is of another scene: what code makes, or the program keeps in its cache, or a file that another file names "
-           "has changed since the run began");
+  check_kept_scene(saved, checkpoint, inputs);
   return {std::move(checkpoint.state), inputs, std::move(reader)};
+}
+
+State read_draping(const std::filesystem::path& file, const Setup& setup, const RunInputs& inputs) {
+  Checkpoint kept = read_checkpoint(file, setup.initial.frame);
+  check_kept_state(file, kept, setup, inputs);
+  if (kept.state.frame >= 0) refuse(file, "frame", fmt::format("is {}, which is not before time 0", kept.state.frame));
+  check_kept_scene(file, kept, inputs);
+  return std::move(kept.state);
 }
 
 std::optional<EndedRun> read_ended(const std::filesystem::path& folder, const RunInputs& inputs) {

@@ -22,6 +22,10 @@ struct ResumedRun {
 // an input file that has changed, arrays of other types, shapes or lengths, and frames of another run.
 ResumedRun read_resumed(const std::filesystem::path& folder, const Setup&, const StepperTraits&, const RunInputs&);
 
+// The state of a draped start that was stopped or killed, from the file in which `prepare` keeps it. Throws Error, as
+// read_resumed does, for a file of another scene, and for a moment that is not before time 0.
+State read_draping(const std::filesystem::path& file, const Setup&, const RunInputs&);
+
 // A run that ended by itself, as its summary.json says.
 struct EndedRun {
   std::string summary = {};  // that file

@@ -109,11 +109,9 @@ void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder,
   }
 }
 
-// Removes results of an earlier run, so that they are not taken for this run's if it fails.
-void remove_results(const std::filesystem::path& folder, bool resumed) {
+// Those that a resumed run makes anew.
+void remove_made_of_frames(const std::filesystem::path& folder) {
   for (const char* name : {"summary.json", "run.xdmf", "view.html"}) remove_file(folder / name);
-  if (resumed) return;
-  for (const char* name : {"checkpoint.h5", "run.h5"}) remove_file(folder / name);
 }
 
 void finish(RunSummary& summary, const StepReport& last, int frame) {
@@ -145,7 +143,7 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   ResumedRun resumed;
   if (!start) resumed = read_resumed(request.out, setup, stepper.traits(), run_inputs(setup));
   State state = start ? start->state : resumed.state;
-  remove_results(request.out, !start);
+  start ? remove_results(request.out) : remove_made_of_frames(request.out);
   const RunInputs inputs = start ? run_inputs(setup) : resumed.inputs;
   write_file(request.out / "config.yaml", config_in(request.out, setup));
 
@@ -162,6 +160,7 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
     recorder.add(record_initial(setup.scene, recorder.terms, state, drive));
     recorder.outcome(state, drive);
     recorder.checkpoint(state);  // so that a run that is killed soon is resumed, too
+    remove_file(draping_file(request.out));
   } else {
     copy_frames(resumed, request.out, recorder);
     rename_file(first_file, file);
@@ -187,6 +186,11 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
 }
 
 }  // namespace
+
+void remove_results(const std::filesystem::path& folder) {
+  remove_made_of_frames(folder);
+  for (const char* name : {"checkpoint.h5", "run.h5"}) remove_file(folder / name);
+}
 
 RunSummary run_scene(const Setup& setup, const Start& start, Stepper& stepper, const RunRequest& request) {
   return run_from(&start, setup, stepper, request);

@@ -6,6 +6,7 @@
 #include <array>
 #include <numeric>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -61,33 +62,31 @@ nlohmann::ordered_json switched_off_json(const RunSummary& s) {
   return all;
 }
 
+std::string vertices_text(long n) { return counted(n, "vertex", "vertices"); }
+
 // Adds lines about cloth that contact left alone, and budgets that ran out.
 void add_doubtful(const RunSummary& s, LabelLines& add) {
   for (const RunSummary::SwitchedOff& one : s.switched_off)
     if (one.frames > 0)
       add("switched off",
-          fmt::format("up to {} triangles of `{}`, in {} frame{}, first in {}: it crosses itself there, "
-                      "and cloth that its parts catch is let through",
-                      one.most, one.obstacle, one.frames, one.frames == 1 ? "" : "s", one.first_frame));
+          fmt::format(
+              "up to {} of `{}`, in {}, first in {}: it crosses itself there, and cloth that its parts catch is "
+              "let through",
+              counted(one.most, "triangle"), one.obstacle, counted(one.frames, "frame"), one.first_frame));
   if (const auto pushed = static_cast<long>(total_of(s.fields, "pushed_out").sum); pushed > 0)
-    add("pushed out",
-        fmt::format("{} vertices over all frames, by the repulsive layer or the settling of a network", pushed));
-  const auto frames = [&](std::string_view field) { return total_of(s.fields, field).frames; };
-  if (frames("not_converged") > 0)
-    add("not converged", fmt::format("{} frames: {:.2g} m off at most", frames("not_converged"),
-                                     total_of(s.fields, "unsolved").largest));
-  if (frames("out_of_newton") > 0)
-    add("out of Newton", fmt::format("{} frames: later solves were rough, {:.2g} m off at most",
-                                     frames("out_of_newton"), total_of(s.fields, "unsolved").largest));
-  if (frames("out_of_untangling") > 0)
-    add("out of untangling",
-        fmt::format("{} frames: what was tangled still waited for the next", frames("out_of_untangling")));
-  if (frames("out_of_response") > 0)
-    add("out of response", fmt::format("{} frames: later motion was shortened", frames("out_of_response")));
-  if (frames("out_of_proofs") > 0)
-    add("out of proofs", fmt::format("{} frames: the audit of their motion is not whole, and what it "
-                                     "gave up counts as passed through",
-                                     frames("out_of_proofs")));
+    add("pushed out", vertices_text(pushed) + " over all frames, by the repulsive layer or the settling of a network");
+  const auto in_frames = [&](std::string_view field, const std::string& name, const std::string& what) {
+    if (const int frames = total_of(s.fields, field).frames; frames > 0) add(name, counted(frames, "frame") + what);
+  };
+  // Not every stepper bounds how far its solves are off.
+  const double unsolved = total_of(s.fields, "unsolved").largest;
+  const std::string off = unsolved > 0 ? fmt::format("{:.2g} m off at most", unsolved) : "";
+  in_frames("not_converged", "not converged", off.empty() ? "" : ": " + off);
+  in_frames("out_of_newton", "out of Newton", ": later solves were rough" + (off.empty() ? "" : ", " + off));
+  in_frames("out_of_untangling", "out of untangling", ": what was tangled still waited for the next");
+  in_frames("out_of_response", "out of response", ": later motion was shortened");
+  in_frames("out_of_proofs", "out of proofs",
+            ": the audit of their motion is not whole, and what it gave up counts as passed through");
 }
 
 nlohmann::ordered_json total_json(const BoundField<StepReport>& field, const FieldTotal& total, const InSummary& one,
@@ -231,7 +230,7 @@ std::string summary_text(const RunSummary& s) {
   const std::string end = s.end == RunEnd::finished ? "" : fmt::format(", {} {}", end_name(s.end), s.reason);
   if (!s.prepared.empty()) add("start", s.prepared);
   add("frames", fmt::format("{} of {}{}", s.frames, s.frames_wanted, end));
-  add("cloth", fmt::format("{} vertices, {} triangles", s.vertices, s.triangles));
+  add("cloth", vertices_text(s.vertices) + ", " + counted(s.triangles, "triangle"));
   add("time a frame", fmt::format("{:.1f} ms (median {:.1f})", mean_milliseconds(s), median_milliseconds(s)));
   if (!phases.empty()) add("  by phase [ms]", phases);
   if (const std::string verdicts = verdicts_text(s); !verdicts.empty()) add("proposals", verdicts);
@@ -243,35 +242,35 @@ std::string summary_text(const RunSummary& s) {
   const FieldTotal& cut_out = total_of(s.fields, "cut_out");
   const auto cut_at_start = static_cast<long>(cut_out.at_start), cut_at_end = static_cast<long>(cut_out.at_end);
   if (cut_at_start > 0)
-    add("cut out", cut_at_end > 0 ? fmt::format("{} triangles at the start, {} at the end: no pair is counted of them",
-                                                cut_at_start, cut_at_end)
-                                  : fmt::format("{} triangles at the start, none after frame {}", cut_at_start,
-                                                cut_out.last_frame));
+    add("cut out", counted(cut_at_start, "triangle") + " at the start, " +
+                       (cut_at_end > 0 ? fmt::format("{} at the end: no pair is counted of them", cut_at_end)
+                                       : fmt::format("none after frame {}", cut_out.last_frame)));
   if (!s.self_audited) add("self", "not audited");
-  if (s.vertex_pairs > 0) add("cross at a vertex", fmt::format("{} pairs over all frames", s.vertex_pairs));
-  if (s.worst_inside > 0) add("inside obstacles", fmt::format("{} vertices in the worst frame", s.worst_inside));
+  if (s.vertex_pairs > 0) add("cross at a vertex", counted(s.vertex_pairs, "pair") + " over all frames");
+  if (s.worst_inside > 0) add("inside obstacles", vertices_text(s.worst_inside) + " in the worst frame");
   for (const WornWatch& one : s.slid_off) add("slid off", slid_off_text(one));
-  if (s.nonfinite > 0) add("not finite", fmt::format("{} vertices over all frames", s.nonfinite));
+  if (s.nonfinite > 0) add("not finite", vertices_text(s.nonfinite) + " over all frames");
   const auto sum = [&](std::string_view field) { return static_cast<long>(total_of(s.fields, field).sum); };
   const auto largest = [&](std::string_view field) { return total_of(s.fields, field).largest; };
   const auto contacts = static_cast<long>(largest("contacts"));
   if (contacts > 0 || sum("impulses") > 0 || sum("zones") > 0)  // networks do not look for contacts
-    add("contacts", fmt::format("{} at most; {} impulses, {} zones", contacts, sum("impulses"), sum("zones")));
+    add("contacts", fmt::format("{} at most; {}, {}", contacts, counted(sum("impulses"), "impulse"),
+                                counted(sum("zones"), "zone")));
   if (sum("halved_substeps") > 0) add("substeps halved", std::to_string(sum("halved_substeps")));
   if (sum("held_vertices") > 0)
     add("held back", fmt::format("{:.2g} % of all vertices and substeps", 100 * held_fraction(s)));
-  if (sum("passed_through") > 0) add("passed through", fmt::format("{} pairs over all frames", sum("passed_through")));
+  if (sum("passed_through") > 0) add("passed through", counted(sum("passed_through"), "pair") + " over all frames");
   if (sum("jumped") > 0)
-    add("jumped", fmt::format("{} obstacles, first in frame {}: too fast for a sweep, so what they passed is not "
-                              "known; give more frames a second or substeps",
-                              sum("jumped"), total_of(s.fields, "jumped").first_frame));
+    add("jumped", fmt::format("{}, first in frame {}: too fast for a sweep, so what was passed is not known; give more "
+                              "frames a second or substeps",
+                              counted(sum("jumped"), "obstacle"), total_of(s.fields, "jumped").first_frame));
   if (const FieldTotal& gains = total_of(s.fields, "energy_gain"); gains.frames > 0)
-    add("energy from nowhere", fmt::format("in {} frames, first in frame {}: more than pins, obstacles and wind gave",
-                                           gains.frames, gains.first_frame));
+    add("energy from nowhere", fmt::format("in {}, first in frame {}: more than pins, obstacles and wind gave",
+                                           counted(gains.frames, "frame"), gains.first_frame));
   if (largest("obstacle_lag") > 0)
     add("obstacles lag",
-        fmt::format("{:.2g} m at most; where they were wanted {} pairs and {:.2g} m deep at worst",
-                    largest("obstacle_lag"), static_cast<long>(largest("pairs_wanted")), largest("depth_wanted")));
+        fmt::format("{:.2g} m at most; where they were wanted {} and {:.2g} m deep at worst", largest("obstacle_lag"),
+                    counted(static_cast<long>(largest("pairs_wanted")), "pair"), largest("depth_wanted")));
   add_doubtful(s, add);
   add("left out", out.empty() ? "nothing" : out);
   for (const std::string& warning : s.warnings) add("warning", warning);

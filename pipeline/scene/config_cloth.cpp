@@ -134,7 +134,7 @@ const Section& cloth_section() {
       "Exactly one of rectangle, disc, tube, ribbon, tshirt, mesh and garment gives the shape of the cloth.",
       std::vector<Key>{text("name", "Name of the cloth. Default: cloth0, cloth1, ...")} + sheet_keys() +
           std::vector<Key>{section(mesh_section(), "", "A mesh file."),
-                           section(garment_options().section, "", "A garment that a body of the scene wears.")} +
+                           section(garment_section(), "", "A garment that a body of the scene wears.")} +
           placement_keys() +
           std::vector<Key>{
               section(copies_section(), "", "Copies of the cloth."),

@@ -5,8 +5,10 @@ namespace selvedge {
 
 using namespace table;
 
-const Options<GarmentOptions>& garment_options() {
-  static const Options<GarmentOptions> table(
+namespace table {
+
+const Section& garment_section() {
+  static const Section table{
       "garment",
       "A garment that a body of the scene wears. It is resized to the body's shape and starts where skinning puts it "
       "in the body's first pose. It has the placement and motion of the body and no placement of its own. Exactly one "
@@ -15,14 +17,13 @@ const Options<GarmentOptions>& garment_options() {
       {path("file",
             "Garment file (.h5) made by `selvedge dress` or `selvedge pattern`, or a mesh (.obj, .ply) where the body "
             "wears it in its zero pose, in the `shape` that the body is given, else in the mean one."),
-       unit_key(),
+       unit_key(), word("up", {"y", "z"}, "y", "Axis of a mesh that points up."), weld_key(), weld_within_key(),
        word("fit", {"loose", "tight"}, "loose", "How a mesh follows the body, as `--fit` of `selvedge dress`."),
-       flag("weld", false,
-            "True: joins vertices of the mesh that lie at one place, as files have them along seams of their texture. "
-            "Exports have them apart again."),
        with_words(text("cut", "Name of a garment that the program makes (docs/garments.md)."), garment_names()),
        texts("over", "Cuts that are worn under the `cut`, from the body outward."),
-       number("edge", &GarmentOptions::edge, Unit::length, positive, "Edge length of the `cut`."),
+       number("edge", Unit::length, positive, "",
+              "Edge length of the `cut`, 2 cm by default, or of the garments of the `outfit`, those of its `form` by "
+              "default."),
        text("outfit",
             "Name of an outfit. It is searched in `outfits.yaml` beside the scene, in the folder above, and in "
             "configs/outfits.yaml."),
@@ -35,9 +36,12 @@ const Options<GarmentOptions>& garment_options() {
        flag("pins", true,
             "True: the garment's own pins move with the skin of the body, soft tissue included. False: the garment has "
             "no such pins.")},
-      "file", {"file", "cut", "outfit"});
+      "file",
+      {"file", "cut", "outfit"}};
   return table;
 }
+
+}  // namespace table
 
 const Options<Draping>& start_options() {
   static const Options<Draping> table(

@@ -38,7 +38,6 @@ const Options<ContactSettings>& contact_options();
 const Options<Wind>& wind_options();
 const Options<Spring>& spring_options();
 const Options<Draping>& start_options();
-const Options<GarmentOptions>& garment_options();
 const Options<TshirtShape>& tshirt_options();
 const OptionRows<SheetOptions>& sheet_options();  // of every sheet by code but the T-shirt
 const OptionRows<Material>& material_options();   // what may be said of a material by value
@@ -46,6 +45,7 @@ const OptionRows<Material>& material_options();   // what may be said of a mater
 namespace table {
 
 const Section& cloth_section();
+const Section& garment_section();  // what a body of the scene wears
 const Section& material_section();
 std::vector<Key> sheet_keys();       // rectangle, disc, tube, ribbon, tshirt
 std::vector<Key> selection_keys();   // vertices, box, group

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/distance.hpp"
 
@@ -123,10 +124,13 @@ void leave_out_massless(ClothPart& part, std::vector<std::string>& warnings) {
     if (massless[v])
       if (const auto found = follower_of(v, triangles, joined.of(v), part.rest)) part.followers.push_back(*found);
   keep_triangles(kept, part);
-  std::string warning = fmt::format("cloth `{}`: {} triangles of zero rest area are left out", part.name, left_out);
+  std::string warning = fmt::format("cloth `{}`: {} of zero rest area {} left out", part.name,
+                                    counted(left_out, "triangle"), by_number(left_out, "is", "are"));
   if (std::ranges::find(massless, 1) != massless.end())
-    warning += fmt::format(", and {} vertices without mass follow the cloth that they were joined to by them",
-                           part.followers.size());
+    warning +=
+        fmt::format(", and {} the cloth that {} to",
+                    counted(std::ssize(part.followers), "vertex without mass follows", "vertices without mass follow"),
+                    by_number(std::ssize(part.followers), "it was joined", "they were joined"));
   warnings.push_back(warning);
 }
 

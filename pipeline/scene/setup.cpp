@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/host/bounds.hpp"
@@ -92,8 +93,10 @@ PinPart massless(const Scene& scene, const Points& x, const std::vector<ClothPar
   for (int v = 0; v < masses.size(); ++v)
     if (!(masses[v] > 0)) held.vertices.push_back(v);
   if (held.vertices.size() > followers)
-    warnings.push_back(
-        fmt::format("{} vertices without mass are held in place, and hold nothing", held.vertices.size() - followers));
+    warnings.push_back(counted(std::ssize(held.vertices) - static_cast<std::ptrdiff_t>(followers),
+                               "vertex without mass is held in place, and holds",
+                               "vertices without mass are held in place, and hold") +
+                       " nothing");
   held.at = [place = Points(x(held.vertices, Eigen::all))](double) { return place; };
   return held;
 }

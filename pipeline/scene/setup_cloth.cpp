@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
@@ -89,11 +90,23 @@ PinPart read_pin(const Config& section, const ClothPart& part) {
 
 // Pieces that touch in single vertices, or lie edge to edge, fall apart, and their contact takes long.
 void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warnings) {
-  if (const int count = coincident_vertices(part.rest); count > 0)
-    warnings.push_back(
-        fmt::format("cloth `{}`: {} vertices lie where others do and are not joined to them; `weld: true` under "
-                    "`mesh` joins them, `seams` join chosen ones",
-                    part.name, count));
+  const int count = coincident_vertices(part.rest);
+  if (count == 0) return;
+  const int joined = weldable(part.rest, part.mesh.triangles).joined;
+  warnings.push_back(fmt::format(
+      "cloth `{}`: {} where {} and {} not joined to {}; `weld: true` under `mesh` joins {}, `seams` join chosen ones",
+      part.name, counted(count, "vertex lies", "vertices lie"), by_number(count, "another does", "others do"),
+      by_number(count, "is", "are"), by_number(count, "it", "them"),
+      joined == count ? by_number(count, "it", "them") : fmt::format("{} of them", joined)));
+}
+
+// A garment of a file whose seams are not welded falls apart along them.
+void warn_of_seams(const Config& garment, const ClothPart& part, std::vector<std::string>& warnings) {
+  const int joined = weldable(part.rest, part.mesh.triangles).joined;
+  if (joined == 0) return;
+  const bool is_mesh = std::filesystem::path(garment["file"].text()).extension() != ".h5";
+  warnings.push_back("cloth `" + part.name + "`: " +
+                     unwelded_text(joined, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
 }
 
 // A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
@@ -110,6 +123,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
     warn_of_extent(section["mesh"], "cloth `" + part.name + "`", largest_cloth, part.mesh.x, warnings);
   if (!worn) sew(section["seams"], folder, part, warnings);
   if (section["mesh"].given) warn_of_coincident(part, warnings);
+  if (worn && section["garment"]["file"].given) warn_of_seams(section["garment"], part, warnings);
   leave_out_massless(part, warnings);
   if (worn && section["start"]["moving"].flag())
     part.velocity = skinned_velocity(*part.worn, 0);

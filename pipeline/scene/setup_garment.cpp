@@ -7,6 +7,7 @@
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/garments/mesh_frame.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/garments/worn_part.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
@@ -71,8 +72,9 @@ void check_mannequin(const Config& garment, const Performance& who) {
 
 Garment read_cut(const Config& section, const Performance& who) {
   check_mannequin(section["cut"], who);
-  return kept_garment(cache_folder(), section["cut"].text(), who.body, garment_options().read(section),
-                      section["over"].words);
+  GarmentOptions options;
+  if (const Config& edge = section["edge"]; edge.given) options.edge = edge.number();
+  return kept_garment(cache_folder(), section["cut"].text(), who.body, options, section["over"].words);
 }
 
 std::vector<Garment> read_outfit(const Config& section, const std::filesystem::path& folder, const Performance& who) {
@@ -83,7 +85,8 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
   for (const Outfit& outfit : wardrobe.outfits) {
     known.push_back(outfit.name);
     if (outfit.name != name.text()) continue;
-    const double edge = section["form"].text() == "full" ? outfit.edge : outfit.small_edge;
+    const double of_form = section["form"].text() == "full" ? outfit.edge : outfit.small_edge;
+    const double edge = section["edge"].given ? section["edge"].number() : of_form;
     return section["layers"].text() == "alone" ? kept_layers(cache_folder(), outfit, who.body, edge)
                                                : kept_outfit(cache_folder(), outfit, who.body, edge);
   }
@@ -93,22 +96,51 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
 
 bool is_mesh(const std::filesystem::path& name) { return name.extension() == ".obj" || name.extension() == ".ply"; }
 
+// What to do with a mesh that is not on the body as its section says.
+std::string frame_cure(const Points& x, const Points& body, const Triangles& triangles) {
+  const std::string otherwise = "make the garment with `selvedge dress`, which takes poses";
+  const std::optional<MeshFrame> frame = clear_frame(fitting_frames(x, body, triangles));
+  if (!frame) return "give its `unit` and the axis that points `up`, or " + otherwise;
+  return fmt::format("write `unit: {}, up: {}`, with which it lies on the body, or {}", frame->unit,
+                     frame->up == Up::y ? "y" : "z", otherwise);
+}
+
 // A mesh that lies where the body wears it in its zero pose and the shape that its section gives.
 Garment read_dressed(const Config& section, const std::filesystem::path& file, const Performance& who,
                      std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
   read_materials(mesh);
-  if (section["weld"].flag()) weld(mesh, file.string());
-  mesh.x *= read_unit(section["unit"]);
+  const Points as_read = mesh.x, body = shaped(who.body.skin, who.given_shape);
+  mesh.x = read_unit(section["unit"]) * with_y_up(mesh.x, section["up"].text() == "z" ? Up::z : Up::y);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
-  warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  if (worn_part(mesh.x, shaped(who.body.skin, who.given_shape)).places.empty())
+  if (worn_part(mesh.x, body).places.empty())
     section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
-                         "give its `unit`, or make the garment with `selvedge dress`, which takes poses");
+                         frame_cure(as_read, body, who.body.skin.triangles));
+  read_weld(section, file.string(), mesh);
+  warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
   const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
   Garment garment = dressed(mesh, who.body, how).garment;
   garment.name = file.stem().string();
   return garment;
+}
+
+// Keys that what gives the garment does not use are mistakes. Defaults are written into the configurations of runs, so
+// that a key with its default is none.
+void check_keys_used(const Config& section) {
+  const char* kind = section["file"].given ? "file" : section["cut"].given ? "cut" : "outfit";
+  const auto refuse = [&](const char* key, const char* of, bool differs) {
+    if (differs && std::string_view(kind) != of)
+      section[key].fail(fmt::format("is given beside `{}`, and is for a `{}`", kind, of), "leave it out");
+  };
+  if (section["edge"].given && section["file"].given)
+    section["edge"].fail("is given beside `file`, and is for a `cut` or an `outfit`", "leave it out");
+  refuse("over", "cut", section["over"].given && !section["over"].words.empty());
+  refuse("form", "outfit", section["form"].text() != "small");
+  refuse("layers", "outfit", section["layers"].text() != "over");
+  refuse("unit", "file", read_unit(section["unit"]) != 1);
+  refuse("up", "file", section["up"].text() != "y");
+  refuse("fit", "file", section["fit"].text() != "loose");
+  refuse("weld", "file", section["weld"].flag());
 }
 
 Garment read_file(const Config& section, const std::filesystem::path& folder, const Performance& who,
@@ -118,8 +150,10 @@ Garment read_file(const Config& section, const std::filesystem::path& folder, co
   if (is_mesh(path)) return read_dressed(section, path, who, warnings);
   if (path.extension() != ".h5")
     file.fail("is no .h5, .obj or .ply file", "`selvedge dress` makes a garment of a mesh that a body wears");
-  if (read_unit(section["unit"]) != 1 || section["fit"].text() != "loose" || section["weld"].flag())
-    file.fail("is a garment file, which has its own unit and fit", "leave `unit`, `fit` and `weld` out");
+  if (read_unit(section["unit"]) != 1 || section["up"].text() != "y" || section["fit"].text() != "loose")
+    file.fail("is a garment file, which has its own unit, axes and fit", "leave `unit`, `up` and `fit` out");
+  if (section["weld"].flag())
+    file.fail("is a garment file, whose seams are as they were made", "make it with `selvedge dress --weld`");
   Garment garment = read_garment(path);
   check_fits(file, garment, who);
   if (!garment.made_for.empty() && garment.made_for != who.body.name)
@@ -132,6 +166,7 @@ Garment read_file(const Config& section, const std::filesystem::path& folder, co
 
 std::vector<Garment> read_garments(const Config& section, const std::filesystem::path& folder, const Performance& who,
                                    std::vector<std::string>& warnings) {
+  check_keys_used(section);
   std::vector<Garment> garments;
   if (section["outfit"].given)
     garments = read_outfit(section, folder, who);

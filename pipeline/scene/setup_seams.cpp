@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
@@ -119,9 +120,9 @@ void check_edges(const Surface& before, const Surface& after, const Weld& weld, 
     }
   if (clashing > 0)
     warnings.push_back(
-        fmt::format("cloth `{}`: panels face opposite ways along {} sewn edges; if a seam is twisted, "
+        fmt::format("cloth `{}`: panels face opposite ways along {}; if a seam is twisted, "
                     "list one of its sides the other way round",
-                    name, clashing));
+                    name, counted(clashing, "sewn edge")));
 }
 
 // The triangles round a sewn vertex must be one fan.

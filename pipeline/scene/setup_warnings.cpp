@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/counted.hpp"
 
 namespace selvedge {
 namespace {
@@ -32,10 +33,12 @@ void warn_of_thickness(const Scene& scene, std::vector<std::string>& warnings) {
     else if (altitude < scene.contact.thickness)
       ++thin;
   }
-  if (flat > 0) warnings.push_back(fmt::format("{} triangles of zero rest area, which resist no stretch", flat));
+  if (flat > 0)
+    warnings.push_back(counted(flat, "triangle") + " of zero rest area, which " + by_number(flat, "resists", "resist") +
+                       " no stretch");
   if (thin > 0 && scene.contact.self)
-    warnings.push_back(fmt::format("contact.thickness {} m is larger than the smallest altitude of {} triangles",
-                                   scene.contact.thickness, thin));
+    warnings.push_back(fmt::format("contact.thickness {} m is larger than the smallest altitude of {}",
+                                   scene.contact.thickness, counted(thin, "triangle")));
 }
 
 void warn_of_rounding(const Scene& scene, const Points& x, const std::vector<Points>& obstacles,
@@ -45,9 +48,9 @@ void warn_of_rounding(const Scene& scene, const Points& x, const std::vector<Poi
   for (const Points& obstacle : obstacles) count += coarser_than(step, obstacle);
   if (count > 0)
     warnings.push_back(
-        fmt::format("{} vertices are so far from the origin that stored positions are rounded by more than a tenth of "
+        fmt::format("{} so far from the origin that stored positions are rounded by more than a tenth of "
                     "contact.thickness; move the scene to the origin by `translate`",
-                    count));
+                    counted(count, "vertex is", "vertices are")));
 }
 
 void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene, const Points& x,
@@ -66,9 +69,9 @@ void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene
         const auto deep = [&](const SignedDistance& one) { return one.value < -scene.contact.thickness; };
         if (const auto count = std::ranges::count_if(field.ask(at), deep); count > 0)
           warnings.push_back(
-              fmt::format("{} pins {} of cloth `{}` are inside the obstacle `{}`: where it does not move "
-                          "away, they stay there",
-                          count, pin.name, parts[c].name, scene.obstacles[k].name));
+              fmt::format("{} {} of cloth `{}` {} inside the obstacle `{}`: where it does not move away, {} there",
+                          counted(count, "pin"), pin.name, parts[c].name, by_number(count, "is", "are"),
+                          scene.obstacles[k].name, by_number(count, "it stays", "they stay")));
       }
   }
 }

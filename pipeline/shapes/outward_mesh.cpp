@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "collision/exact/outward_faces.hpp"
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/same_places.hpp"
 
 namespace selvedge {
@@ -46,17 +47,16 @@ void say(const std::string& mesh, const Findings& found, std::vector<std::string
   const auto tell = [&](int count, const std::string& what) {
     if (count > 0) warnings.push_back(mesh + ": " + of_shells(count, found.shells) + " " + what);
   };
-  tell(found.over, fmt::format("faced inwards and was turned outwards, {} triangles", found.over_triangles));
+  tell(found.over, "faced inwards and was turned outwards, " + counted(found.over_triangles, "triangle"));
   tell(found.mixed, fmt::format("had triangles that faced the other way than the rest, {} were turned", found.odd));
   tell(found.cavities, "faces inwards inside of another: taken for a cavity, where cloth is outside");
   tell(found.open,
-       fmt::format("is open ({} edges with one triangle): cloth that gets inside is not known to be there and is not "
-                   "pushed out; close its holes if it is to be solid",
-                   found.open_edges));
-  tell(
-      found.branching,
-      fmt::format("has {} edges with more than two triangles, so that nothing is inside of it; part what touches there",
-                  found.branching_edges));
+       fmt::format("is open ({} with one triangle): cloth that gets inside is not known to be there and is not pushed "
+                   "out; close its holes if it is to be solid",
+                   counted(found.open_edges, "edge")));
+  tell(found.branching,
+       fmt::format("has {} with more than two triangles, so that nothing is inside of it; part what touches there",
+                   counted(found.branching_edges, "edge")));
   tell(found.one_sided, "has one side only, so that nothing is inside of it");
 }
 

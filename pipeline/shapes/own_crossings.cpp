@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
@@ -44,7 +45,7 @@ OwnCrossings own_crossings(const NamedVertices& meshes, const Points& x, const T
 std::string crossings_text(const OwnCrossings& found) {
   if (found.too_many) return "more pairs of triangles than are counted";
   if (found.between.empty()) return "";
-  std::string text = fmt::format("{} pairs of triangles", found.pairs());
+  std::string text = counted(found.pairs(), "pair") + " of triangles";
   std::string parts;
   for (const OwnCrossings::Between& one : found.between) {
     if (one.a.empty() && one.b.empty()) continue;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/cells/do_cells.hpp"
 #include "pipeline/cells/scene_cells.hpp"
@@ -71,18 +72,20 @@ std::vector<std::string> failures_of(const StressRow& row, const RunSummary& sum
     if (bad) all.push_back(std::move(why));
   };
   fail_if(summary.end != RunEnd::finished, fmt::format("ended in frame {} {}", summary.frames, summary.reason));
-  fail_if(row.nonfinite > 0, fmt::format("{} vertices not finite", row.nonfinite));
-  fail_if(row.pairs > 0, fmt::format("{} intersecting pairs, most in frame {}", row.pairs, row.worst_frame));
-  fail_if(row.vertex_pairs > 0, fmt::format("{} pairs that share a vertex cross", row.vertex_pairs));
-  fail_if(row.worst_inside > 0, fmt::format("{} vertices inside an obstacle", row.worst_inside));
+  fail_if(row.nonfinite > 0, counted(row.nonfinite, "vertex", "vertices") + " not finite");
+  fail_if(row.pairs > 0, fmt::format("{}, most in frame {}", counted(row.pairs, "intersecting pair"), row.worst_frame));
+  fail_if(row.vertex_pairs > 0,
+          counted(row.vertex_pairs, "pair that shares a vertex crosses", "pairs that share a vertex cross"));
+  fail_if(row.worst_inside > 0, counted(row.worst_inside, "vertex", "vertices") + " inside an obstacle");
   const auto cut_out = static_cast<long>(total_of(summary.fields, "cut_out").at_end);
-  fail_if(cut_out > 0, fmt::format("{} triangles still cut out", cut_out));
+  fail_if(cut_out > 0, counted(cut_out, "triangle") + " still cut out");
   fail_if(row.passed_through > 0, fmt::format("{} passed through", row.passed_through));
   fail_if(row.held_share >= most_held, fmt::format("{:.2f} % of vertex-steps held back", 100 * row.held_share));
   if (!obstacles_must_lag(setup)) {
     fail_if(row.obstacle_lag > least_obstacle_lag,
             fmt::format("obstacles lag {:.2g} m where there is room", row.obstacle_lag));
-    fail_if(row.wanted_frames > 0, fmt::format("{} frames touch the wanted positions", row.wanted_frames));
+    fail_if(row.wanted_frames > 0,
+            counted(row.wanted_frames, "frame touches", "frames touch") + " the wanted positions");
   }
   for (std::size_t k = 0; k < summary.outcomes.size(); ++k)
     fail_if(!summary.outcomes[k].came_true, summary.outcome_lines[k]);

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
 #include "pipeline/cells/do_cells.hpp"
@@ -111,8 +112,8 @@ std::vector<std::string> failures_of(const WardrobeRow& row, const RunSummary& s
   const bool for_the_body = rejected && excused[static_cast<std::size_t>(std::min(row.frames, row.frames_wanted))];
   fail_if(rejected, fmt::format("rejected in frame {}: {}{}", row.frames, summary.reason,
                                 for_the_body ? ", where the body passes through itself" : ""));
-  fail_if(row.cloth_pairs > 0, fmt::format("{} pairs of cloth with cloth", row.cloth_pairs));
-  fail_if(row.body_pairs > 0, fmt::format("{} pairs of cloth with the body", row.body_pairs));
+  fail_if(row.cloth_pairs > 0, counted(row.cloth_pairs, "pair") + " of cloth with cloth");
+  fail_if(row.body_pairs > 0, counted(row.body_pairs, "pair") + " of cloth with the body");
   fail_if(row.lag > least_body_lag, fmt::format("the body lags by {:.2g} m", row.lag));
   fail_if(row.depth > most_depth, fmt::format("a vertex is {:.2g} m deep in the body", row.depth));
   for (const WornWatch& one : summary.slid_off) all.push_back(slid_off_text(one));

@@ -11,12 +11,15 @@
 #include "physics/energies/measures.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/tools/check_measures.hpp"
 
 namespace selvedge {
 namespace {
+
+constexpr const char* weld_keys_text = "`weld: true` in a scene, or `selvedge dress --weld` for a garment,";
 
 struct Bodies {
   std::vector<Surface> surfaces;
@@ -127,8 +130,20 @@ Scene rest_scene(int vertex_count, const Triangles& triangles, std::vector<RestT
   return scene;
 }
 
+// Each cloth by itself: others may lie at the same place.
+void warn_of_seams(const TrajectoryInfo& info, CheckReport& report) {
+  for (std::size_t c = 0; c < info.cloth_names.size(); ++c) {
+    const int vertex = info.cloth_first_vertex[c], triangle = info.cloth_first_triangle[c];
+    const Triangles triangles =
+        info.triangles.middleRows(triangle, info.cloth_first_triangle[c + 1] - triangle).array() - vertex;
+    const Points rest = info.rest.middleRows(vertex, info.cloth_first_vertex[c + 1] - vertex);
+    if (const int joined = rest.rows() > 0 ? weldable(rest, triangles).joined : 0; joined > 0)
+      report.warnings.push_back("cloth `" + info.cloth_names[c] + "`: " + unwelded_text(joined, weld_keys_text));
+  }
+}
+
 void check_trajectory(const CheckRequest& request, CheckReport& report) {
-  const TrajectoryReader reader(request.file);
+  const TrajectoryReader reader(trajectory_file(request.file));
   const TrajectoryInfo& info = reader.info();
   const Scene scene = rest_scene(static_cast<int>(info.rest.rows()), info.triangles,
                                  request.rest ? read_rest(*request.rest, info.triangles) : info.rest_triangle);
@@ -158,6 +173,8 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
 void check_mesh(const CheckRequest& request, CheckReport& report) {
   const Mesh mesh = read_mesh(request.file);
   report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+  if (const int joined = weldable(mesh.x, mesh.triangles).joined; joined > 0)
+    report.warnings.push_back(unwelded_text(joined, weld_keys_text));
   Bodies bodies;
   add_body_files(request, bodies, report);
   const Scene scene = rest_scene(static_cast<int>(mesh.x.rows()), mesh.triangles,
@@ -169,8 +186,8 @@ void check_mesh(const CheckRequest& request, CheckReport& report) {
   report.bodies = static_cast<int>(bodies.surfaces.size());
 }
 
-bool is_hdf5(const std::filesystem::path& file) {
-  const std::string ending = file.extension().string();
+bool is_trajectory(const std::filesystem::path& file_or_folder) {
+  const std::string ending = trajectory_file(file_or_folder).extension().string();
   return ending == ".h5" || ending == ".hdf5";
 }
 
@@ -193,11 +210,12 @@ CheckReport check(const CheckRequest& request) {
       throw Error("this build has no FCL", "--audit fcl", "install libfcl-dev and configure with -DSELVEDGE_FCL=ON");
     report.fcl.emplace();
   }
-  if (is_hdf5(request.file))
+  if (is_trajectory(request.file))
     check_trajectory(request, report);
   else
     check_mesh(request, report);
-  if (request.against) report.measures = measures_against(request.file, *request.against);
+  if (request.against)
+    report.measures = measures_against(trajectory_file(request.file), trajectory_file(*request.against));
   return report;
 }
 

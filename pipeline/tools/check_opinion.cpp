@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "collision/geometry/corners.hpp"
+#include "collision/geometry/counted.hpp"
 #include "collision/search/obstacle.hpp"
 
 namespace selvedge {
@@ -111,9 +112,10 @@ bool agrees_on_bodies(const Surface& cloth, const Points& x, std::span<const Aud
 
 std::string opinion_text(const Opinion& o) {
   const int worst = o.pairs_by_frame.empty() ? 0 : *std::max_element(o.pairs_by_frame.begin(), o.pairs_by_frame.end());
-  std::string text = fmt::format("{} pairs in the worst frame; cloth not free of the bodies in {} frames", worst,
-                                 o.frames_against_body);
-  text += fmt::format("; {} pairs differ, {} of them by more than rounding", o.disagreements.size(), o.beyond_rounding);
+  std::string text = fmt::format("{} in the worst frame; cloth not free of the bodies in {}", counted(worst, "pair"),
+                                 counted(o.frames_against_body, "frame"));
+  text += fmt::format("; {}, {} by more than rounding",
+                      counted(std::ssize(o.disagreements), "pair differs", "pairs differ"), o.beyond_rounding);
   constexpr std::size_t shown = 20;
   for (std::size_t i = 0; i < std::min(shown, o.disagreements.size()); ++i) {
     const Disagreement& d = o.disagreements[i];

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/measures/run_measures.hpp"
@@ -74,14 +75,15 @@ std::string check_json(const CheckReport& r) {
 std::string check_text(const CheckReport& r) {
   LabelLines add{22};
   add(r.trajectory ? "trajectory" : "mesh",
-      fmt::format("{} frames, {} vertices, {} triangles, {} bodies", r.frames(), r.vertices, r.triangles, r.bodies));
+      fmt::format("{}, {}, {}, {}", counted(r.frames(), "frame"), counted(r.vertices, "vertex", "vertices"),
+                  counted(r.triangles, "triangle"), counted(r.bodies, "body", "bodies")));
   add("intersecting pairs",
       r.worst_pairs == 0 ? "0 in every frame" : fmt::format("{} in frame {}", r.worst_pairs, r.worst_frame));
-  add("crossing at a vertex", fmt::format("{} pairs in the worst frame", r.worst_vertex_pairs));
-  add("inside bodies", fmt::format("{} vertices in the worst frame", r.inside_vertices));
+  add("crossing at a vertex", counted(r.worst_vertex_pairs, "pair") + " in the worst frame");
+  add("inside bodies", counted(r.inside_vertices, "vertex", "vertices") + " in the worst frame");
   add("smallest gap", std::isfinite(r.min_gap) ? fmt::format("{:.3g} m", r.min_gap) : "above the horizon");
   if (r.max_stretch) add("stretch", fmt::format("{:.4f} to {:.4f}", *r.min_stretch, *r.max_stretch));
-  add("not finite", fmt::format("{} vertices", r.nonfinite));
+  add("not finite", counted(r.nonfinite, "vertex", "vertices"));
   add("degenerate triangles", fmt::format("{}", r.degenerate_triangles));
   if (r.fcl) add("FCL's opinion", opinion_text(*r.fcl));
   if (r.volume) add("enclosed volume", volume_text(*r.volume));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/surface.hpp"
 #include "pipeline/bodies/body_hdf5.hpp"
@@ -25,23 +26,12 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-BodyModel read(const BodyRequest& request, BodyReport& report) {
-  const std::string extension = request.file.extension().string();
-  if (extension == ".glb" || extension == ".gltf") {
-    if (request.unit != "m")
-      throw Error("is given for glTF, which is in metres", "--unit " + request.unit, "leave it out");
-    GltfRig rig = read_gltf_rig(request.file, request.meshes);
-    for (const GltfAnimation& animation : rig.scene.animations) report.animations.push_back(animation.name);
-    return std::move(rig.body);
-  }
-  if (extension == ".npz") {
-    if (request.meshes.any())
-      throw Error("has no meshes by name", request.file.string(), "leave --mesh and --without out");
-    return read_smpl(request.file);
-  }
-  if (extension != ".obj" && extension != ".ply")
-    throw Error("is neither a mesh (.obj, .ply), a model of the SMPL family (.npz) nor glTF (.glb, .gltf)",
-                request.file.string(), "write other bodies in HDF5 yourself, see docs/bodies.md");
+// A body whose file says itself which axis is up.
+void refuse_axis(const BodyRequest& request, const std::string& kind) {
+  if (request.up == Up::z) throw Error("is given for " + kind + ", in which y is up", "--up z", "leave it out");
+}
+
+BodyModel read_mesh_body(const BodyRequest& request) {
   const double metres = metres_per_unit(request.unit);
   const bool rigged = !request.skeleton.empty() || !request.weights.empty();
   if (!request.joints.empty() && rigged)
@@ -53,6 +43,30 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
   return read_makehuman(request.file, request.skeleton, request.weights, metres, request.meshes);
 }
 
+BodyModel read(const BodyRequest& request, BodyReport& report) {
+  const std::string extension = request.file.extension().string();
+  if (extension == ".glb" || extension == ".gltf") {
+    if (request.unit != "m")
+      throw Error("is given for glTF, which is in metres", "--unit " + request.unit, "leave it out");
+    refuse_axis(request, "glTF");
+    GltfRig rig = read_gltf_rig(request.file, request.meshes);
+    for (const GltfAnimation& animation : rig.scene.animations) report.animations.push_back(animation.name);
+    return std::move(rig.body);
+  }
+  if (extension == ".npz") {
+    if (request.meshes.any())
+      throw Error("has no meshes by name", request.file.string(), "leave --mesh and --without out");
+    refuse_axis(request, "a model of the SMPL family");
+    return read_smpl(request.file);
+  }
+  if (extension != ".obj" && extension != ".ply")
+    throw Error("is neither a mesh (.obj, .ply), a model of the SMPL family (.npz) nor glTF (.glb, .gltf)",
+                request.file.string(), "write other bodies in HDF5 yourself, see docs/bodies.md");
+  BodyModel body = read_mesh_body(request);
+  turn_y_up(request.up, body);
+  return body;
+}
+
 }  // namespace
 
 BodyReport convert_body(const BodyRequest& request) {
@@ -60,6 +74,7 @@ BodyReport convert_body(const BodyRequest& request) {
   BodyReport report;
   BodyModel body = read(request, report);
   turn_outward(request.file.string(), body, report.warnings);
+  warn_of_axis(request.file.string(), body, report.warnings);
   const Points& rest = body.skin.rest;
   const Points joints = joint_positions(body, {});
   report.out = request.out;
@@ -99,9 +114,9 @@ std::string body_json(const BodyReport& r) {
 
 std::string body_text(const BodyReport& r) {
   LabelLines add{20};
-  add("surface",
-      fmt::format("{} vertices, {} triangles, {}", r.vertices, r.triangles, r.closed ? "closed" : "not closed"));
-  add("joints", fmt::format("{}, {} shapes", r.joints, r.shapes));
+  add("surface", fmt::format("{}, {}, {}", counted(r.vertices, "vertex", "vertices"), counted(r.triangles, "triangle"),
+                             r.closed ? "closed" : "not closed"));
+  add("joints", fmt::format("{}, {}", r.joints, counted(r.shapes, "shape")));
   add("height", fmt::format("{:.3f} m", r.height));
   if (r.lacks.empty())
     add("zero pose", fmt::format("arms {:.0f} degrees from SMPL's, {}", r.arms_off / degree,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/config/name_choice.hpp"
 #include "pipeline/shapes/own_crossings.hpp"
 
@@ -16,6 +17,7 @@ struct BodyRequest {
   std::filesystem::path out;                // our HDF5 form (.h5)
   std::filesystem::path joints{};           // positions of the joints (.yaml), in place of skeleton and weights
   NameChoice meshes{};                      // meshes of glTF or groups of the mesh that become the body
+  Up up = Up::y;                            // axis of the mesh, and of the positions of its joints, that points up
 };
 
 struct BodyReport {

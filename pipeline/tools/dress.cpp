@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "collision/audit/audit.hpp"
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
@@ -80,7 +82,9 @@ double distance_to(const Points& x, const Triangles& triangles, const Vec3& p) {
   return least;
 }
 
-void look_at(const Points& x, const Points& body, const BodyModel& model, DressReport& report) {
+// `cure`: what would put a mesh on the body that is not on it.
+void look_at(const Points& x, const Points& body, const BodyModel& model, const std::function<std::string()>& cure,
+             DressReport& report) {
   const Triangles& triangles = report.garment.skin.triangles;
   const Surface cloth = make_surface(static_cast<int>(x.rows()), triangles);
   const Surface surface = make_surface(static_cast<int>(body.rows()), model.skin.triangles);
@@ -97,13 +101,54 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, DressR
   report.self_pairs = static_cast<int>(found.self_pairs.size() + found.vertex_pairs.size());
   report.body_pairs = static_cast<int>(found.obstacle_pairs.size());
   if (cloth.nonmanifold_edges > 0)
-    report.warnings.push_back(fmt::format("{} edges of more than two triangles", cloth.nonmanifold_edges));
+    report.warnings.push_back(counted(cloth.nonmanifold_edges, "edge") + " of more than two triangles");
   report.on_body = !worn_part(x, body).places.empty();
   if (!report.on_body)
-    report.warnings.emplace_back("is not worn: hardly a vertex lies on the body; are unit, pose and body right?");
+    report.warnings.push_back("is not worn: hardly a vertex lies on the body; " + cure());
   else if (report.mean_distance > far_away)
     report.warnings.push_back(
         fmt::format("lies {:.2g} m from the body on average: are unit, pose and body right?", report.mean_distance));
+}
+
+std::string frame_options(const MeshFrame& frame) {
+  return "--unit " + frame.unit + " --up " + (frame.up == Up::y ? "y" : "z");
+}
+
+std::string frame_cure(const Points& x, const Points& body, const Triangles& triangles) {
+  const std::optional<MeshFrame> frame = clear_frame(fitting_frames(x, body, triangles));
+  return frame ? frame_options(*frame) + " would put it there" : "are unit, pose and body right?";
+}
+
+// How the mesh is meant: as the request says, or as it lies on the body.
+MeshFrame frame_of(const DressRequest& request, const Points& x, const Points& body, const Triangles& triangles,
+                   std::string& reason) {
+  MeshFrame frame{request.unit.value_or("m"), request.up.value_or(Up::y)};
+  if (request.unit && request.up) return frame;
+  const std::vector<FrameFit> fits = fitting_frames(x, body, triangles, request.unit, request.up);
+  if (fits.empty()) {
+    reason = "assumed: in no unit and with no axis up does the mesh lie on the body";
+    return frame;
+  }
+  const std::optional<MeshFrame> clear = clear_frame(fits);
+  if (!clear)
+    throw Error(fmt::format("would lie on the body about equally well in {} and in {}", frame_text(fits[0].frame),
+                            frame_text(fits[1].frame)),
+                request.mesh.string(), "say which by --unit and --up");
+  reason = fmt::format("guessed: so it lies on the body, {}; {} says the same",
+                       fits.size() == 1 ? "and in no other unit or with the other axis up"
+                                        : "and nearer than in " + frame_text(fits[1].frame),
+                       frame_options(*clear));
+  return *clear;
+}
+
+// Joins the pieces if that is asked for, else counts what it would join.
+void weld_pieces(const DressRequest& request, Mesh& mesh, DressReport& report) {
+  if (request.weld) {
+    report.welded = weld(mesh, request.mesh.string(), request.weld_within).joined;
+    return;
+  }
+  report.weldable = weldable(mesh.x, mesh.triangles).joined;
+  if (report.weldable > 0) report.warnings.push_back(unwelded_text(report.weldable, "--weld"));
 }
 
 }  // namespace
@@ -112,26 +157,26 @@ DressReport dress(const DressRequest& request) {
   h5::check_out_name(request.out, "garments");
   Mesh mesh = read_mesh(request.mesh);
   read_materials(mesh);
-  if (request.weld) weld(mesh, request.mesh.string());
-  mesh.x *= metres_per_unit(request.unit);
   const Performance who = read_wearer(request);
   DressReport report;
-  report.warnings = mesh.warnings;
+  const BodyPose stands = read_pose(request, who);
+  const Points as_read = mesh.x, worn_by = body_in(who, stands);
+  report.frame = frame_of(request, as_read, worn_by, who.body.skin.triangles, report.frame_reason);
+  mesh.x = in_metres(as_read, report.frame);
+  weld_pieces(request, mesh, report);
+  report.warnings.insert(report.warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
   report.warnings.insert(report.warnings.end(), who.warnings.begin(), who.warnings.end());
-  if (const int apart = request.weld ? 0 : coincident_vertices(mesh.x); apart > 0)
-    report.warnings.push_back(fmt::format(
-        "{} vertices lie where others do, and are not joined to them: cloth parts there; --weld joins them", apart));
   if (request.pose && !who.clip.poses.empty() && request.time > end_of(who.clip))
     report.warnings.push_back(fmt::format("{} ends at {:.4g} s, before {:.4g} s: its last pose is taken", *request.pose,
                                           end_of(who.clip), request.time));
-  const Dressing how{who.shape, read_pose(request, who), request.fit == "tight" ? Fit::tight : Fit::loose,
-                     request.pins};
+  const Dressing how{who.shape, stands, request.fit == "tight" ? Fit::tight : Fit::loose, request.pins};
   DressedMesh made = dressed(mesh, who.body, how);
   report.pinned = std::move(made.pinned);
   Garment& garment = report.garment = std::move(made.garment);
   garment.name = request.mesh.stem().string();
   report.reposed = (rest_shape(garment, who.body, who.shape) - mesh.x).rowwise().norm().maxCoeff();
-  look_at(mesh.x, body_in(who, garment.made_in), who.body, report);
+  look_at(
+      mesh.x, worn_by, who.body, [&] { return frame_cure(as_read, worn_by, who.body.skin.triangles); }, report);
   write_garment(request.out, garment);
   return report;
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -52,22 +53,23 @@ std::string pattern_json(const PatternReport& report) {
 
 std::string pattern_text(const PatternReport& report) {
   LabelLines add{24};
-  add("pattern", fmt::format("{} panels, {} seams of {} stitches, {:.3g} m2", report.panels, report.seams,
-                             report.stitches, report.area));
+  add("pattern", fmt::format("{}, {} of {}, {:.3g} m2", counted(report.panels, "panel"), counted(report.seams, "seam"),
+                             counted(report.stitches, "stitch", "stitches"), report.area));
   add("smallest angle", fmt::format("{:.3g} degrees", degrees * report.least_angle));
   for (const std::string& warning : report.warnings) add("warning", warning);
   const SewnPattern& sewn = report.sewn;
   if (sewn.x.rows() == 0) return add.text;
-  add("garment", fmt::format("{}: {} vertices, {} triangles, for the body {}", report.garment.name, sewn.x.rows(),
-                             sewn.triangles.rows(), report.garment.made_for));
+  add("garment",
+      fmt::format("{}: {}, {}, for the body {}", report.garment.name, counted(sewn.x.rows(), "vertex", "vertices"),
+                  counted(sewn.triangles.rows(), "triangle"), report.garment.made_for));
   for (const auto& [name, vertices] : report.garment.groups)
-    add("group " + name, fmt::format("{} vertices", vertices.size()));
+    add("group " + name, counted(std::ssize(vertices), "vertex", "vertices"));
   add("gaps before joining", fmt::format("{:.3g} mm at most; joining moved vertices by {:.3g} mm",
                                          1e3 * report.largest_gap, 1e3 * sewn.joined_by));
   add(sewn.moving_share < resting_share ? "at rest" : "not at rest",
       fmt::format("{:.3g} % of vertices move in the last frame", 100 * sewn.moving_share));
   add("intersecting pairs", fmt::format("{} with itself, {} with the body", report.self_pairs, report.body_pairs));
-  add("inside the body", fmt::format("{} vertices", report.inside_vertices));
+  add("inside the body", counted(report.inside_vertices, "vertex", "vertices"));
   add("body parted from itself", fmt::format("by {:.3g} mm at most", 1e3 * sewn.body_moved));
   add("distance to the body", fmt::format("{:.3g} mm in the median", 1e3 * report.median_distance));
   add("strain", fmt::format("{:.3g} % in the 99th percentile", 100 * report.strain_99));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/untangle/caught.hpp"
 #include "physics/linear/linear_solver.hpp"
@@ -25,8 +26,8 @@ std::string linear_solver_of(const Setup& setup) {
   const char* name = chosen == LinearSolver::cholmod ? "CHOLMOD"
                      : chosen == LinearSolver::pcg   ? "PCG with block Jacobi"
                                                      : "PCG with a multigrid V-cycle";
-  return fmt::format("{}, {}{} free vertices", name, wanted == LinearSolver::automatic ? "for " : "as asked for, ",
-                     count);
+  return fmt::format("{}, {}{}", name, wanted == LinearSolver::automatic ? "for " : "as asked for, ",
+                     counted(count, "free vertex", "free vertices"));
 }
 
 // Lines for a stepper of any kind. Throws Error where a run would throw for missing weights.
@@ -38,7 +39,7 @@ void append_common_lines(const Setup& setup, std::vector<PlanLine>& lines) {
                    : refu.weights.empty() ? "behind every frame: what is inside a closed body is pushed out"
                                           : "behind every frame, its scales by the network " + refu.weights});
   if (setup.initial.frame < 0)
-    lines.push_back({"draped start", true, fmt::format("{} frames before time 0, not recorded", -setup.initial.frame)});
+    lines.push_back({"draped start", true, counted(-setup.initial.frame, "frame") + " before time 0, not recorded"});
   if (!setup.initial.cut_out.empty()) lines.push_back({"cut start", true, setup.prepared + " until they are free"});
 }
 
@@ -62,8 +63,8 @@ struct OwnCrossing {
 
 std::string text_of(const OwnCrossing& found, const std::string& name, int looked) {
   const std::string where =
-      fmt::format("`{}` crosses itself in {} of {} frames looked at, in {} pairs in frame {}: ", name, found.frames,
-                  looked, found.pairs, found.worst_frame);
+      fmt::format("`{}` crosses itself in {} of {} looked at, in {} in frame {}: ", name, found.frames,
+                  counted(looked, "frame"), counted(found.pairs, "pair"), found.worst_frame);
   return where + (found.moves_rigidly
                       ? "it keeps its shape, so that contact with its outside stays on"
                       : fmt::format("up to {} of its triangles can be switched off, for cloth that its parts catch",
@@ -91,7 +92,7 @@ void append_crossing_lines(const Setup& setup, std::vector<PlanLine>& lines) {
           {"switching off", !found[k].moves_rigidly, text_of(found[k], setup.scene.obstacles[k].name, steps + 1)});
   if (lines.size() == before)
     lines.push_back(
-        {"switching off", false, fmt::format("no obstacle crosses itself in {} frames looked at", steps + 1)});
+        {"switching off", false, "no obstacle crosses itself in " + counted(steps + 1, "frame") + " looked at"});
 }
 
 // Lines on what soft tissue costs, by body. They follow the look at a run's frames, which has posed the bodies.
@@ -154,10 +155,10 @@ std::string plan_text(const Setup& setup) {
   const std::vector<PlanLine> lines = lines_of(setup);
   std::size_t width = 0;
   for (const PlanLine& line : lines) width = std::max(width, line.feature.size());
-  std::string text =
-      fmt::format("{}: {} vertices, {} triangles, {} frames at {} a second, stepper {}\n", setup.file.string(),
-                  setup.scene.surface.vertex_count, setup.scene.surface.triangles.rows(), setup.run.frames,
-                  setup.run.fps, setup.run.stepper);
+  std::string text = fmt::format("{}: {}, {}, {} at {} a second, stepper {}\n", setup.file.string(),
+                                 counted(setup.scene.surface.vertex_count, "vertex", "vertices"),
+                                 counted(setup.scene.surface.triangles.rows(), "triangle"),
+                                 counted(setup.run.frames, "frame"), setup.run.fps, setup.run.stepper);
   for (const PlanLine& line : lines)
     text += fmt::format("  {:<3}  {:<{}}  {}\n", line.in ? "in" : "out", line.feature, width, line.why);
   for (const std::string& warning : scene_warnings(setup)) text += "  warning: " + warning + "\n";

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/push_mesh.hpp"
 
@@ -42,13 +43,14 @@ std::string push_json(const PushReport& report) {
 }
 
 std::string push_text(const PushReport& report) {
-  std::string text = fmt::format("garment of {} vertices and {} triangles, body of {} triangles{}{}\n", report.vertices,
-                                 report.triangles, report.body_triangles, report.body_closed ? "" : ", open",
-                                 report.body_crosses_itself ? ", through itself" : "");
+  std::string text =
+      fmt::format("garment of {} and {}, body of {}{}{}\n", counted(report.vertices, "vertex", "vertices"),
+                  counted(report.triangles, "triangle"), counted(report.body_triangles, "triangle"),
+                  report.body_closed ? "" : ", open", report.body_crosses_itself ? ", through itself" : "");
   text += "\nbefore\n" + errors_text(report.before) + "\nafter\n" + errors_text(report.after);
-  text +=
-      fmt::format("\npushed {} vertices ({} deep, {} edges torn, {} projected again), {} edges and {} faces passed\n",
-                  report.pushed, report.deep, report.torn, report.projected, report.edges, report.faces);
+  text += fmt::format("\npushed {} ({} deep, {} torn, {} projected again), {} and {} passed\n",
+                      counted(report.pushed, "vertex", "vertices"), report.deep, counted(report.torn, "edge"),
+                      report.projected, counted(report.edges, "edge"), counted(report.faces, "face"));
   text += fmt::format("distances {:.2f} ms, push {:.2f} ms, edges {:.2f} ms\n", 1e3 * report.seconds_distance,
                       1e3 * report.seconds_push, 1e3 * report.seconds_edges);
   for (const std::string& warning : report.warnings) text += "warning: " + warning + "\n";

@@ -8,6 +8,7 @@
 #include "collision/audit/audit.hpp"
 #include "collision/distance/signed_distance.hpp"
 #include "physics/energies/measures.hpp"
+#include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -46,6 +47,7 @@ BodyModel body_of_mesh(const std::filesystem::path& file, std::vector<std::strin
   body.joints = {"root"};
   body.parents = {-1};
   body.regressor = SkinWeights(Eigen::MatrixXd::Constant(1, n, 1.0 / static_cast<double>(n)).sparseView());
+  warn_of_axis(file.string(), body, warnings);
   return body;
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"
@@ -42,19 +43,20 @@ std::string untangle_json(const UntangleReport& report) {
 std::string untangle_text(const UntangleReport& report) {
   const UntangleResult& r = report.result;
   LabelLines add{22};
-  add("mesh", fmt::format("{} vertices, {} triangles, {} bodies", report.vertices, report.triangles, report.bodies));
+  add("mesh", fmt::format("{}, {}, {}", counted(report.vertices, "vertex", "vertices"),
+                          counted(report.triangles, "triangle"), counted(report.bodies, "body", "bodies")));
   add("intersecting pairs", fmt::format("{} before, {} after", r.pairs_before, r.pairs_after));
   add("crossing at a vertex", fmt::format("{} before, {} after", r.vertex_pairs_before, r.vertex_pairs_after));
   add("inside bodies", fmt::format("{} before, {} after", report.inside_before, report.inside_after));
   add("length of contours", fmt::format("{:.4g} m before, {:.4g} m after", r.length_before, r.length_after));
-  add("audit", fmt::format("{} pairs", report.audited_pairs));
-  add("moved",
-      fmt::format("{} vertices, by {:.3g} mean edges on average and {:.3g} at most", r.moved, r.mean_move, r.max_move));
+  add("audit", counted(report.audited_pairs, "pair"));
+  add("moved", fmt::format("{}, by {:.3g} mean edges on average and {:.3g} at most",
+                           counted(r.moved, "vertex", "vertices"), r.mean_move, r.max_move));
   add("stretch", fmt::format("{:.4f} to {:.4f} of the input", r.least_stretch, r.largest_stretch));
   add("degenerate triangles", fmt::format("{} before, {} after", report.degenerate_before, report.degenerate_after));
-  add("time", fmt::format("{} iterations, {:.2f} s", r.iterations, report.seconds));
+  add("time", fmt::format("{}, {:.2f} s", counted(r.iterations, "iteration"), report.seconds));
   for (const Remainder& left : r.left)
-    add("left", fmt::format("{} pairs, {:.3g} m: {}", left.pairs, left.length, left.reason));
+    add("left", fmt::format("{}, {:.3g} m: {}", counted(left.pairs, "pair"), left.length, left.reason));
   for (const std::string& warning : report.warnings) add("warning", warning);
   return add.text;
 }

@@ -181,7 +181,7 @@ const Section& wear_section() {
   static const Section table{"wear",
                              "A garment, or an outfit of them.",
                              {text("name", "Name of it. Default: those of its garments."), weight_key("it"),
-                              needed(sections("garments", garment_options().section, "",
+                              needed(sections("garments", garment_section(), "",
                                               "What is worn, from the body outward, as `garment` of a scene."))}};
   return table;
 }

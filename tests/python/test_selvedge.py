@@ -3,6 +3,7 @@
 import gc
 import os
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -255,3 +256,15 @@ def test_point_caches(tmp_path):
     (tmp_path / "a.pc16").write_bytes(head + np.array([2], "<i4").tobytes() + frames.tobytes())
     cache = selvedge.read_cache(tmp_path / "a.pc16")
     assert cache["fps"] == 0 and (np.array(cache["x"]) == frames).all()
+
+
+def test_absurdly_many_threads_are_taken_back_with_a_warning():
+    environment = dict(os.environ, OMP_NUM_THREADS="100000")
+    code = "import selvedge; s = selvedge.Scene(); print('imported')"
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    assert run.stdout == "imported\n"
+    assert "RuntimeWarning: OMP_NUM_THREADS=100000 is more than" in run.stderr
+    refused = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], env=environment, capture_output=True, text=True
+    )
+    assert refused.returncode == 1 and "RuntimeWarning" in refused.stderr

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "pipeline/run/prepare.hpp"
+#include "tests/pipeline/fake_garment.hpp"
 #include "tests/pipeline/fake_run.hpp"
 #include "tests/program.hpp"
 #include "tests/source_root.hpp"
@@ -271,6 +273,71 @@ TEST_CASE("--resume=auto starts, goes on, or reports the run that has ended") {
   CHECK(other.status == 2);
   CHECK(other.err.find("another configuration") != std::string::npos);
   CHECK(selvedge_program(folder, arguments + "s").status == 2);
+}
+
+TEST_CASE("--resume=auto goes on with a draped start that was stopped, and says so") {
+  const fake::Folder folder("main_draping");
+  fake::write_skirt(folder);
+  const std::filesystem::path out = folder.path / "out", file = folder.path / "scene.yaml";
+  std::ofstream(file) << "cloths: [{garment: skirt.h5, start: {from: draped, seconds: 0.2, hold: 0.1}}]\n"
+                         "obstacles: [{name: person, body: {clip: walk, room: 0}}]\nrun: {frames: 2, fps: 20}\n";
+  const Setup setup = read_setup(file);
+  std::filesystem::create_directories(out);
+  int asked = 0;
+  REQUIRE_FALSE(prepare(
+      setup, [&] { return ++asked == 3; }, nullptr, {}, KeptDraping{out}));
+  const std::string arguments = "simulate " + file.string() + " --no-view --out ";
+  const Ended resumed = selvedge_program(folder, arguments + out.string() + " --resume=auto");
+  INFO(resumed.out << resumed.err);
+  CHECK(resumed.out.find("goes on with the draped start") != std::string::npos);
+  CHECK(resumed.out.find("(3 of them before it was stopped)") != std::string::npos);
+  const Ended whole = selvedge_program(folder, arguments + out.string() + "2 --resume=auto");
+  CHECK(whole.out.find("starts: nothing to go on from") != std::string::npos);
+  CHECK(TrajectoryReader(out / "run.h5").frame(2).x == TrajectoryReader(out.string() + "2/run.h5").frame(2).x);
+}
+
+TEST_CASE("a limit on the size of files ends a run with a sentence and status 2, as a full disk does") {
+  const fake::Folder folder("main_file_limit");
+  write_scene(folder);
+  const std::string scene = (folder.path / "scene.yaml").string();
+  int failed = 0;
+  for (const int blocks : {8, 64, 128, 192}) {
+    const Ended run =
+        selvedge_program(folder,
+                         "simulate " + scene + " --no-view --set cloths.sheet.rectangle.resolution=30 --out " +
+                             (folder.path / "out").string(),
+                         "ulimit -f " + std::to_string(blocks) + "; ");
+    INFO(blocks << ": " << run.status << "\n" << run.err);
+    CHECK((run.status == 0 || run.status == 2));
+    if (run.status == 0) continue;
+    ++failed;
+    CHECK(run.err.find("cannot ") != std::string::npos);
+    CHECK(run.err.find("File too large") != std::string::npos);
+    CHECK(run.err.find("cure: ") != std::string::npos);
+  }
+  CHECK(failed > 1);
+}
+
+TEST_CASE("a number and its noun agree in what commands print") {
+  const fake::Folder folder("main_plurals");
+  write_scene(folder);
+  const std::string out = (folder.path / "out").string();
+  std::ofstream(folder.path / "one.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
+  std::ofstream(folder.path / "pin.yaml")
+      << "cloths: [{name: sheet, rectangle: {size: [0.2, 0.2], resolution: 5}, pins: [{vertices: [12]}]}]\n"
+         "obstacles: [{name: ball, sphere: {radius: 0.05}}]\nrun: {frames: 1}\n";
+  for (const std::string& arguments :
+       {"check " + (folder.path / "one.obj").string(),
+        "simulate " + (folder.path / "pin.yaml").string() + " --no-view --out " + out,
+        "plan " + (folder.path / "pin.yaml").string(), "export " + out + " --format obj --out " + out}) {
+    const Ended run = selvedge_program(folder, arguments);
+    INFO(run.out << run.err);
+    CHECK(run.status < 2);
+    const std::string all = run.out + run.err;
+    for (const char* word : {"frames", "pins", "pairs", "vertices", "triangles", "obstacles", "files", "bodies"})
+      for (std::size_t at = all.find(word); at != std::string::npos; at = all.find(word, at + 1))
+        CHECK_FALSE((at > 2 && all.substr(at - 2, 2) == "1 " && std::isdigit(all[at - 3]) == 0 && all[at - 3] != '.'));
+  }
 }
 
 TEST_CASE("what cannot be printed ends with status 2") {

@@ -287,6 +287,27 @@ TEST_CASE("A comparison that cannot be made says why", "[compare]") {
                     Contains("comparison.yaml:1: `scenes.0.file` names the missing file"));
 }
 
+TEST_CASE("Errors inside of a comparison's sequences name its file", "[compare]") {
+  const fake::Folder folder("compare_sequences");
+  const auto complaint = [&](const std::string& sequences) -> std::string {
+    CompareRequest request;
+    request.file = fake::write(folder, "made.yaml", "sequences: {" + sequences + "}\nsettings: [{name: a}]\n");
+    request.out = folder.path / "out";
+    try {
+      compare(request);
+    } catch (const Error& error) {
+      return error.where();
+    }
+    return {};
+  };
+  const std::string file = (folder.path / "made.yaml").string() + ": sequences: ";
+  CHECK_THAT(complaint("file: a.yaml, count: 1, outfits: [winterr], clips: [walk]"), Catch::StartsWith(file));
+  CHECK_THAT(complaint("file: a.yaml, count: 1"), Catch::StartsWith(file));
+  CHECK_THAT(complaint("file: a.yaml, training: absent.yaml"), Catch::StartsWith(file));
+  CHECK_THAT(complaint("file: a.yaml, count: 1, tangled: 1, outfits: [summer], clips: [wlak]"),
+             Catch::StartsWith(file));
+}
+
 TEST_CASE("The comparison of the conventional stepper is of small scenes, and runs in its short form", "[compare]") {
   const std::filesystem::path file = configs / "conventional.yaml";
   const Comparison comparison = read_comparison(file, false);

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "collision/audit/audit.hpp"
+#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/tools/plan.hpp"
 #include "tests/pipeline/fake_garment.hpp"
@@ -133,6 +135,41 @@ TEST_CASE("A run with a draped start that was interrupted is resumed without dra
   REQUIRE(other.frame_count() == 6);
   CHECK(one.frame(0).report.by == "initial");
   for (int i = 0; i < 6; ++i) CHECK(one.frame(i).x == other.frame(i).x);
+}
+
+TEST_CASE("A draped start that was stopped or killed goes on from where it was kept, with the same bits", "[prepare]") {
+  const Folder folder("prepare_kept");
+  fake::write_skirt(folder);
+  const Setup setup = read(folder, draped);
+  const KeptDraping kept{folder.path / "out", false, 0}, goes_on{folder.path / "out", true, 0};
+  std::filesystem::create_directories(kept.folder);
+  std::ofstream(kept.folder / "run.h5") << "of an earlier run";
+  int asked = 0;
+  CHECK_FALSE(prepare(
+      setup, [&] { return ++asked == 4; }, nullptr, {}, kept));
+  CHECK_FALSE(std::filesystem::exists(kept.folder / "run.h5"));
+  CHECK(read_checkpoint(draping_file(kept.folder), setup.initial.frame).state.frame == -6);
+  const std::optional<Start> start = prepare(setup, {}, nullptr, {}, goes_on), whole = prepare(setup);
+  REQUIRE((start && whole));
+  CHECK(start->state.x == whole->state.x);
+  CHECK(start->state.obstacles == whole->state.obstacles);
+  CHECK_THAT(start->prepared, Contains("draped in 10 frames (4 of them before it was stopped)"));
+  // A process that is killed leaves what was kept last; nothing is taken from another scene.
+  const Setup other = read(folder, draped, "", {"contact.thickness=2 mm"});
+  CHECK_THROWS_WITH(prepare(other, {}, nullptr, {}, goes_on),
+                    Contains("draping.h5") && Contains("another configuration"));
+  Checkpoint late = read_checkpoint(draping_file(kept.folder), setup.initial.frame);
+  late.state.frame = 2;
+  late.state.time = 2 / setup.run.fps;
+  write_checkpoint(draping_file(kept.folder), late.state, late.inputs);
+  CHECK_THROWS_WITH(prepare(setup, {}, nullptr, {}, goes_on), Contains("draping.h5: frame"));
+  // The run has a checkpoint of its own from its first frame on.
+  RunRequest request;
+  request.out = kept.folder;
+  request.stop = [] { return true; };
+  run_scene(setup, *whole, *make_stepper(setup), request);
+  CHECK_FALSE(std::filesystem::exists(draping_file(kept.folder)));
+  CHECK(std::filesystem::exists(kept.folder / "checkpoint.h5"));
 }
 
 TEST_CASE("A draped garment's other pins go with the body until time 0", "[prepare]") {

@@ -127,7 +127,7 @@ TEST_CASE("A checkpoint is refused whose arrays have another type, rank or lengt
   CHECK_THAT(field("obstacle_0", H5T_NATIVE_DOUBLE, {3, 3}, numbers.data()),
              Contains("obstacle_0") && Contains("3 rows") && Contains("`still`") && Contains("4 vertices"));
   CHECK_THAT(field("obstacle_1", H5T_NATIVE_DOUBLE, {}, nullptr),
-             Contains("are 1 obstacles") && Contains("the scene has 2"));
+             Contains("are 1 obstacle,") && Contains("the scene has 2"));
   CHECK_THAT(field("frame", H5T_NATIVE_INT, {1}, &minus), Contains("frame") && Contains("is -1"));
   CHECK_THAT(field("frame", H5T_NATIVE_INT, {1}, &many), Contains("is 13") && Contains("12 frames"));
   CHECK_THAT(field("frame", H5T_NATIVE_DOUBLE, {1}, &late), Contains("floating-point numbers, not"));

@@ -322,6 +322,18 @@ TEST_CASE("a summary says in how many frames the audit of the motion was not who
   REQUIRE_THAT(summary_text(summary), Catch::Contains("out of proofs"));
 }
 
+TEST_CASE("a summary says how far solves were off where the stepper knows it, and counts one frame as one") {
+  RunSummary summary;
+  Frame frame = fake::frame(fake::scene(), 1);
+  frame.report.doubts.not_converged = true;
+  frame.report.unsolved = 0;
+  add_frame(summary, 1, frame);
+  CHECK_THAT(summary_text(summary), Catch::Contains("not converged       1 frame\n"));
+  frame.report.unsolved = 2e-3;
+  add_frame(summary, 2, frame);
+  CHECK_THAT(summary_text(summary), Catch::Contains("not converged       2 frames: 0.002 m off at most\n"));
+}
+
 TEST_CASE("a summary says in how many frames an accepted step left something in doubt, each doubt by itself") {
   RunSummary summary;
   for (int index = 0; index < 6; ++index) {

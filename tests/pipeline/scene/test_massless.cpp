@@ -59,7 +59,7 @@ TEST_CASE("What has no mass holds nothing and follows what it was joined to", "[
   // no triangle.
   const Setup faulty = with_mesh(folder, sheet("v 0.02 0.5 0.05\nv 0.03 0.5 0.05\nv 1 1 1\n", "f 8 50 9\nf 50 51 9\n"));
   CHECK(warned(faulty, "2 triangles of zero rest area are left out, and 2 vertices without mass follow"));
-  CHECK(warned(faulty, "1 vertices without mass are held in place, and hold nothing"));
+  CHECK(warned(faulty, "1 vertex without mass is held in place, and holds nothing"));
   CHECK(faulty.scene.surface.triangles == plain.scene.surface.triangles);
   REQUIRE(faulty.followers.size() == 2);
 
@@ -74,8 +74,8 @@ TEST_CASE("What has no mass holds nothing and follows what it was joined to", "[
 TEST_CASE("A triangle without area along the rim meets nothing of the sheet that it lies on", "[massless]") {
   const fake::Folder folder("massless_rim");
   const Setup plain = with_mesh(folder, sheet("", "")), faulty = with_mesh(folder, sheet("", "f 1 2 3\n"));
-  CHECK(warned(faulty, "1 triangles of zero rest area are left out"));
-  CHECK_FALSE(warned(faulty, "vertices without mass"));
+  CHECK(warned(faulty, "1 triangle of zero rest area is left out"));
+  CHECK_FALSE(warned(faulty, "without mass"));
   CHECK(faulty.scene.surface.triangles == plain.scene.surface.triangles);
   CHECK(after(faulty, 3) == after(plain, 3));
   // Inside the sheet, where two triangles have an edge in three parts, it closes the gap.

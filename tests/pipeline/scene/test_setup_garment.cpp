@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "collision/exact/inside.hpp"
+#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
@@ -278,6 +279,69 @@ TEST_CASE("Pockets of a garment by code stay where they are stitched", "[setup_g
   for (const Spring& spring : setup.scene.springs)
     apart = std::max(apart, std::abs((row(state.x, spring.b) - row(state.x, spring.a)).norm() - spring.rest_length));
   CHECK(apart < 1e-3);
+}
+
+TEST_CASE("A garment's key that does nothing beside others is an error", "[setup_garment]") {
+  const Folder folder("garment_keys");
+  write_band(folder);
+  const auto complaint = [&](const std::string& garment) -> std::string {
+    try {
+      read(folder, "{garment: {" + garment + "}}", "{name: person, body: {}}");
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return {};
+  };
+  CHECK_THAT(complaint("file: band.h5, edge: 2 cm"), Contains("garment.edge`") && Contains("beside `file`"));
+  CHECK_THAT(complaint("file: band.h5, form: full"), Contains("garment.form`") && Contains("for a `outfit`"));
+  CHECK_THAT(complaint("cut: shorts, layers: alone"), Contains("garment.layers`"));
+  CHECK_THAT(complaint("cut: shorts, unit: cm"), Contains("garment.unit`") && Contains("for a `file`"));
+  CHECK_THAT(complaint("outfit: summer, over: [shorts]"), Contains("garment.over`"));
+  CHECK_THAT(complaint("outfit: summer, weld: true"), Contains("garment.weld`"));
+  CHECK_THAT(complaint("cut: shorts, up: z"), Contains("garment.up`"));
+  CHECK_THAT(complaint("file: band.h5, weld: true"), Contains("selvedge dress --weld"));
+  CHECK_THAT(complaint("file: band.h5, up: z"), Contains("leave `unit`, `up` and `fit` out"));
+  // Defaults, as the configuration of a run has them, are none.
+  CHECK(
+      complaint("file: band.h5, unit: m, up: y, fit: loose, form: small, layers: over, over: [], weld: false").empty());
+  const auto vertices = [&](const std::string& garment) {
+    return read(folder, "{garment: {" + garment + "}}", "{name: person, body: {}}").scene.surface.vertex_count;
+  };
+  CHECK(vertices("outfit: summer, edge: 4.5 cm") < vertices("outfit: summer"));
+}
+
+TEST_CASE("A garment's mesh is welded and turned as its section says, and warned of where it is not",
+          "[setup_garment]") {
+  const Folder folder("garment_mesh_keys");
+  const std::string person = "{name: person, body: {}}";
+  const fake::Piece piece = fake::trunk(fake::mannequin(), -0.05, 0.3, 0.01);
+  // In centimetres, z up, each triangle by itself.
+  Points x(3 * piece.triangles.rows(), 3);
+  Triangles triangles(piece.triangles.rows(), 3);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector3d p = piece.x.row(piece.triangles(t, k));
+      x.row(3 * t + k) << 100 * p.x(), -100 * p.z(), 100 * p.y();
+      triangles(t, k) = static_cast<int>(3 * t + k);
+    }
+  write_obj(folder.path / "band.obj", x, triangles);
+  const auto setup = [&](const std::string& keys) {
+    return read(folder, "{garment: {file: band.obj" + keys + "}}", person);
+  };
+  CHECK_THROWS_WITH(setup(""),
+                    Contains("is not worn") && Contains("write `unit: cm, up: z`, with which it lies on the body"));
+  const Setup loose = setup(", unit: cm, up: z");
+  const std::string joined = std::to_string(x.rows() - piece.x.rows());
+  REQUIRE_FALSE(loose.warnings.empty());
+  CHECK(loose.warnings[0] ==
+        "cloth `cloth0`: the seams are not welded: `weld: true` under `garment` joins " + joined + " vertices");
+  const Setup welded = setup(", unit: cm, up: z, weld: true");
+  CHECK(welded.warnings.empty());
+  CHECK(welded.scene.surface.component_count == 1);
+  CHECK(welded.scene.surface.vertex_count == piece.x.rows());
+  CHECK(welded.scene.surface.triangles.rows() == piece.triangles.rows());
+  CHECK(setup(", unit: cm, up: z, weld: true, weld_within: 0.1 mm").scene.surface.vertex_count == piece.x.rows());
+  CHECK_THROWS_WITH(setup(", unit: cm, up: z, weld_within: 0.1 mm"), Contains("without `weld`"));
 }
 
 TEST_CASE("An outfit is looked up beside the scene before the program's own", "[setup_garment]") {

@@ -46,8 +46,11 @@ TEST_CASE("A file in centimetres that is read as metres is told by its extent", 
   fake::write(scenes.folder, "big.obj", square(60));
   fake::write(scenes.folder, "small.obj", square(0.001));
   CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: big.obj}]\n"),
-             Contains("`shirt` spans 84.9 m") && Contains("`unit`"));
-  CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: small.obj}]\n"), Contains("`shirt` spans 0.00141 m"));
+             Contains("`shirt` spans 84.9 m") && Contains("`unit: cm` makes it 0.849 m"));
+  CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: small.obj}]\n"),
+             Contains("`shirt` spans 0.00141 m") && Contains("`unit: 1000 m` makes it 1.41 m"));
+  fake::write(scenes.folder, "wide.obj", square(10));
+  CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: wide.obj}]\n"), Contains("`unit: dm` makes it 1.41 m"));
   CHECK(scenes.warnings("cloths: [{mesh: {file: big.obj, unit: cm}}]\n").empty());
   CHECK(scenes.warnings("cloths: [{mesh: big.obj, scale: 0.01}]\n").empty());
   CHECK_THAT(scenes.warnings("cloths: [{rectangle: {size: [1, 1], resolution: 3}, translate: [0, 5, 0]}]\n"

@@ -44,6 +44,27 @@ TEST_CASE("a mesh is checked for crossings, gaps and stretch") {
   REQUIRE(*longer.min_stretch == Approx(1));
 }
 
+TEST_CASE("seams that are not welded are told with the number that welding joins") {
+  const fake::Folder folder("check_seams");
+  write_text(folder.path / "panels.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 4 6 5\n");
+  const CheckReport mesh = check({folder.path / "panels.obj", {}, {}});
+  REQUIRE(mesh.warnings.size() == 1);
+  CHECK(mesh.warnings[0].find("the seams are not welded") == 0);
+  CHECK(mesh.warnings[0].find("joins 2 vertices") != std::string::npos);
+}
+
+TEST_CASE("the folder of a run is checked as its trajectory is") {
+  const fake::Folder folder("check_folder");
+  fake::FallingStepper stepper;
+  fake::run(fake::setup(3), stepper, folder.path / "run");
+  const CheckReport of_file = check({folder.path / "run" / "run.h5", {}, {}});
+  const CheckReport of_folder = check({folder.path / "run", {}, {}, folder.path / "run"});
+  CHECK(of_folder.trajectory);
+  CHECK(of_folder.pairs_by_frame == of_file.pairs_by_frame);
+  CHECK(of_folder.frames() == 4);
+  CHECK(of_folder.measures.at("l2_mm") == 0);
+}
+
 TEST_CASE("a mesh is checked against a body") {
   const fake::Folder folder("check_body");
   write_text(folder.path / "cloth.obj", "v 0.01 0.01 0.01\nv 0.02 0.01 0.01\nv 0.01 0.01 0.02\nf 1 2 3\n");
@@ -51,6 +72,7 @@ TEST_CASE("a mesh is checked against a body") {
              "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0 0.1 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
   const CheckReport report = check({folder.path / "cloth.obj", {}, {folder.path / "body.obj"}});
   REQUIRE(report.bodies == 1);
+  CHECK(check_text(report).find("1 frame, 3 vertices, 1 triangle, 1 body\n") != std::string::npos);
   REQUIRE(report.inside_vertices == 3);
   REQUIRE_FALSE(is_clean(report));
 }

@@ -201,9 +201,85 @@ TEST_CASE("What a garment crosses is counted", "[dress]") {
   CHECK(report.inside_vertices == piece.x.rows());
   CHECK(std::filesystem::exists(request.out));
   write_grouped(folder, piece, 100);  // in cm, taken for m
+  request.unit = "m";
   const DressReport huge = dress(request);
   REQUIRE(huge.warnings.size() == 1);
-  CHECK_THAT(huge.warnings[0], Contains("unit"));
+  CHECK_THAT(huge.warnings[0], Contains("--unit cm --up y would put it there"));
+}
+
+TEST_CASE("Unit and axis are guessed from the body, and said", "[dress]") {
+  const Folder folder("dress_guessed");
+  fake::Piece piece = fake::skirt(fake::mannequin(), -0.35, 0.1, 0.02, 40, 14);
+  const Points meant = piece.x;
+  piece.x.col(1) = -meant.col(2);
+  piece.x.col(2) = meant.col(1);
+  DressRequest request;
+  request.mesh = write_grouped(folder, piece, 100);
+  request.out = folder.path / "skirt.h5";
+  const DressReport guessed = dress(request);
+  CHECK(is_clean(guessed));
+  CHECK(guessed.warnings.empty());
+  CHECK(frame_text(guessed.frame) == "cm, z up");
+  CHECK_THAT(dress_text(guessed), Contains("unit and axis") && Contains("cm, z up, guessed: so it lies on the body") &&
+                                      Contains("--unit cm --up z says the same"));
+  CHECK_THAT(dress_json(guessed), Contains("\"unit\":\"cm\"") || Contains("\"unit\": \"cm\""));
+  CHECK(farthest(guessed.garment.skin.rest, meant) < 1e-9);
+  request.unit = "cm";
+  CHECK(frame_text(dress(request).frame) == "cm, z up");
+  request.up = Up::z;
+  const DressReport given = dress(request);
+  CHECK(given.frame_reason.empty());
+  CHECK(farthest(given.garment.skin.rest, guessed.garment.skin.rest) == 0);
+  // Nowhere near the body in any way: said, and not called clean.
+  piece.x.rowwise() += Eigen::RowVector3d(9000, 0, 0);
+  write_grouped(folder, piece);
+  request.unit.reset();
+  request.up.reset();
+  const DressReport nowhere = dress(request);
+  CHECK_FALSE(is_clean(nowhere));
+  CHECK_THAT(nowhere.frame_reason, Contains("in no unit"));
+}
+
+TEST_CASE("A mesh whose seams are not welded is told how many vertices --weld joins", "[dress]") {
+  const Folder folder("dress_weld");
+  const fake::Piece skirt = fake::skirt(fake::mannequin(), -0.35, 0.1, 0.02, 40, 14);
+  // Front and back as panels of their own: a quad column belongs to the half that it lies in.
+  fake::Piece cut{Points(0, 3), skirt.triangles, {}};
+  std::vector<Eigen::RowVector3d> x;
+  std::vector<std::vector<int>> copy(2, std::vector<int>(static_cast<std::size_t>(skirt.x.rows()), -1));
+  for (Eigen::Index t = 0; t < skirt.triangles.rows(); ++t) {
+    const std::size_t half = t / 2 % 40 < 20 ? 0 : 1;
+    for (int k = 0; k < 3; ++k) {
+      int& n = copy[half][static_cast<std::size_t>(skirt.triangles(t, k))];
+      if (n < 0) {
+        n = static_cast<int>(x.size());
+        x.push_back(skirt.x.row(skirt.triangles(t, k)));
+      }
+      cut.triangles(t, k) = n;
+    }
+  }
+  cut.x.resize(static_cast<Eigen::Index>(x.size()), 3);
+  for (std::size_t v = 0; v < x.size(); ++v) cut.x.row(static_cast<Eigen::Index>(v)) = x[v];
+  REQUIRE(cut.x.rows() == skirt.x.rows() + 28);
+  DressRequest request;
+  request.mesh = write_grouped(folder, cut);
+  request.out = folder.path / "skirt.h5";
+  const DressReport loose = dress(request);
+  CHECK(loose.components == 2);
+  CHECK(loose.weldable == 28);
+  CHECK(loose.self_pairs > 0);
+  REQUIRE(loose.warnings.size() == 1);
+  CHECK(loose.warnings[0] == "the seams are not welded: --weld joins 28 vertices");
+  request.weld = true;
+  const DressReport welded = dress(request);
+  CHECK(is_clean(welded));
+  CHECK(welded.components == 1);
+  CHECK(welded.welded == 28);
+  CHECK(welded.warnings.empty());
+  CHECK_THAT(dress_text(welded), Contains("28 vertices joined to others"));
+  CHECK(welded.garment.skin.rest.rows() == skirt.x.rows());
+  request.weld_within = 0.5;
+  CHECK_THROWS_WITH(dress(request), Contains("half"));
 }
 
 TEST_CASE("What is wrong with a request is named", "[dress]") {

@@ -1,0 +1,68 @@
+#include "pipeline/garments/mesh_frame.hpp"
+
+#include <algorithm>
+
+#include "collision/geometry/surface.hpp"
+#include "pipeline/config/config_units.hpp"
+#include "pipeline/garments/worn_part.hpp"
+
+namespace selvedge {
+namespace {
+
+constexpr double beyond_box = 0.25;     // beyond the body's box, of its diagonal
+constexpr double least_extent = 0.1;    // extent of a garment, of that diagonal
+constexpr double clearly_nearer = 1.5;  // how much farther off the second best is at least
+constexpr Eigen::Index most_sampled = 256;
+
+double extent_of(const Points& x) { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
+
+bool fits_box(const Points& x, const Points& body) {
+  const double size = extent_of(body), more = beyond_box * size;
+  const Eigen::RowVector3d low = x.colwise().minCoeff() - body.colwise().minCoeff();
+  const Eigen::RowVector3d high = body.colwise().maxCoeff() - x.colwise().maxCoeff();
+  return extent_of(x) >= least_extent * size && std::min(low.minCoeff(), high.minCoeff()) >= -more;
+}
+
+double off_body(const Points& x, const Points& body, const Points& normals) {
+  const Eigen::Index step = 1 + (x.rows() - 1) / most_sampled;
+  double distances = 0, inside = 0, count = 0;
+  for (Eigen::Index v = 0; v < x.rows(); v += step, ++count) {
+    Eigen::Index foot = 0;
+    distances += std::sqrt((body.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&foot));
+    inside += (x.row(v) - body.row(foot)).dot(normals.row(foot)) < 0;
+  }
+  return distances / count / extent_of(x) + inside / count;
+}
+
+}  // namespace
+
+Points in_metres(const Points& x, const MeshFrame& frame) {
+  return metres_per_unit(frame.unit) * with_y_up(x, frame.up);
+}
+
+std::string frame_text(const MeshFrame& frame) { return frame.unit + (frame.up == Up::y ? ", y up" : ", z up"); }
+
+std::vector<FrameFit> fitting_frames(const Points& x, const Points& body, const Triangles& body_triangles,
+                                     const std::optional<std::string>& unit, const std::optional<Up>& up) {
+  const Points normals = vertex_normals(make_surface(static_cast<int>(body.rows()), body_triangles), body);
+  const std::vector<std::string> units =
+      unit ? std::vector{*unit} : std::vector<std::string>{"m", "dm", "cm", "mm", "in"};
+  const std::vector<Up> axes = up ? std::vector{*up} : std::vector{Up::y, Up::z};
+  std::vector<FrameFit> fits;
+  for (const std::string& one : units)
+    for (const Up axis : axes) {
+      const MeshFrame frame{one, axis};
+      const Points there = in_metres(x, frame);
+      if (fits_box(there, body) && !worn_part(there, body).places.empty())
+        fits.push_back({frame, off_body(there, body, normals)});
+    }
+  std::ranges::stable_sort(fits, {}, &FrameFit::off);
+  return fits;
+}
+
+std::optional<MeshFrame> clear_frame(const std::vector<FrameFit>& fits) {
+  if (fits.empty() || (fits.size() > 1 && fits[1].off <= clearly_nearer * fits[0].off)) return {};
+  return fits[0].frame;
+}
+
+}  // namespace selvedge
