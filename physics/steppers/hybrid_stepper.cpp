@@ -163,7 +163,7 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   work.report.collision.pairs_before = 0;
   Points v = (x - work.from.x) / work.dt;
   finish_step(work.from, work.drive, work.dt, {std::move(x), std::move(v), std::move(obstacles)}, work.to, work.report);
-  if (parts_.hand_over) parts_.hand_over(work.from, work.to);
+  if (parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
   return audited(work, Verdict::admitted);
 }
 
@@ -175,7 +175,7 @@ Verdict HybridStepper::refine(Work& work, const Points& x) {
   work.report = refiner.step(work.from, work.drive, work.dt, work.to, extras);
   work.report.seconds += proposal;
   if (work.report.status != StepStatus::accepted) return Verdict::not_made;
-  if (parts_.hand_over) parts_.hand_over(work.from, work.to);
+  if (parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
   return audited(work, Verdict::refined);
 }
 
@@ -221,7 +221,7 @@ void HybridStepper::take_parent_step(Work& work) {
   const PhaseTimes before = work.report.seconds;
   work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
   work.report.seconds += before;
-  if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.to);
+  if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
 }
 
 void HybridStepper::note_times(bool asked, bool taken, double proposal, double parent) {

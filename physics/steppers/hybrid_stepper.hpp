@@ -37,7 +37,7 @@ struct HybridOptions {
 // `fallback`.
 struct HybridParts {
   std::unique_ptr<Stepper> proposer, parent, refiner = {};
-  std::function<void(const State& from, State& to)> hand_over = {};
+  std::function<void(const State& from, const Drive&, State& to)> hand_over = {};
   std::function<double()> clock = {};  // time so far, for `stop_when_slow` [s]; empty: the machine's clock
 };
 

@@ -90,7 +90,7 @@ Points noise(const State& from, const Points& solved) {
   return x;
 }
 
-void hand_over(const State& from, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
+void hand_over(const State& from, const Drive&, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
 
 std::unique_ptr<Stepper> hybrid(const Scene& scene, const Propose& propose, const HybridOptions& options = {}) {
   return make_hybrid_stepper(
