@@ -119,6 +119,8 @@ MakeStepper hybrid_maker(const Setup& setup) {
     HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
     if (options.mode == HybridMode::refined && options.newton)
       parts.refiner = conventional_part(scene, conventional, recovery, options.newton);
+    if (options.mode == HybridMode::rough)
+      parts.refiner = conventional_part(scene, one_rough_solve(conventional), recovery);
     parts.hand_over = [features](const State& from, const Drive& drive, State& to) {
       carry_frame(features, from, drive, to);
     };
@@ -133,7 +135,9 @@ std::vector<PlanLine> hybrid_lines(const Setup& setup) {
       {HybridMode::corrected, "its motion goes through the response to contact, then the guard"},
       {HybridMode::refined, "a conventional solve begins at it"},
       {HybridMode::gated, "a line search of the step's potential, the response to contact, then the guard"},
-      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"}};
+      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"},
+      {HybridMode::response, "its motion goes through the response to contact, then audits and energy decide"},
+      {HybridMode::rough, "one rough solve begins at it, then audits and energy decide"}};
   const HybridOptions& hybrid = setup.run.hybrid;
   const bool guarded = hybrid.mode != HybridMode::refined;
   std::vector<PlanLine> lines{
