@@ -74,6 +74,7 @@ class LearnedStepper final : public Stepper {
   // Memory that is used again:
   GraphSearch search_;
   Graph graph_;
+  EngineMemory engine_;
   GraphReport found_;
   LossSearch force_search_;
   AssemblyScratch scratch_;
@@ -101,7 +102,7 @@ bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& repo
     make_graph(graph_scene_, rest_, state, features_, tables_, search_, graph_, found_);
     report.seconds.graph += watch.lap();
     if (!found_.refused.empty()) return false;
-    const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_);
+    const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_, engine_);
     next = integrate(rest_, state, features_, tables_.output, output);
     report.seconds.network += watch.lap();
     if (!is_near(next.x) || !is_near(next.velocity)) return false;
