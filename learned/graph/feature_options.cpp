@@ -69,8 +69,10 @@ FeatureWidths with_time(const FeatureOptions& options, int normalised, int behin
 
 int objective_columns(const FeatureOptions& options) {
   return (options.body_inputs ? 14 : 0) + (options.force_inputs ? 3 : 0) + (options.pass_inputs ? 3 : 0) +
-         (options.acceleration_inputs ? 3 : 0);
+         (options.guess_inputs ? 9 : 0) + (options.acceleration_inputs ? 3 : 0);
 }
+
+bool sees_accelerations(const FeatureOptions& options) { return options.acceleration_inputs || options.guess_inputs; }
 
 EmbeddingColumns embedding_columns(const FeatureOptions& options) {
   return {3, 3 + options.type_columns, options.time == TimeFeature::timestep ? 13 : 12};

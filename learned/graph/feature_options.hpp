@@ -36,6 +36,11 @@ enum class MeshOrder { larger_sends, smaller_sends };
 // vertices of a pair (Grigorev et al. 2024, algorithm 2). The other pairs repel.
 enum class ContourRule { all_repel, vertex, all_vertices };
 
+// What the network's output is added to: the motion before, as an acceleration in space (the published networks), or
+// the carried guess (physics/steppers/carried_stepper.hpp), in the frame of each vertex that its skinned target carries
+// along (GraphState::frames). There an output of zero is the baseline `carried`, so that no mean is added to it.
+enum class OutputBase { motion, carried };
+
 // Which cloth vertices that are near each other get an edge, beside those of the mesh (Liao et al. 2024, section
 // 3.1.2). Members are described where keys are bound to them: pipeline/training/training_options.cpp.
 struct SpaceOptions {
@@ -57,14 +62,16 @@ struct FeatureOptions {
   ClothVelocity cloth_velocity = ClothVelocity::carried;
   BodyVelocity body_velocity = BodyVelocity::current;
   PinnedForm pinned = PinnedForm::moved;
+  OutputBase base = OutputBase::motion;
 
-  // More columns of cloth nodes, for our own networks (docs/training.md). Normalised ones: body 14, force 3, move 3.
-  // After the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
+  // More columns of cloth nodes, for our own networks (docs/training.md). Normalised ones: body 14, force 3, move 3,
+  // guess 9. After the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
   bool pinned_flag = false;
   bool body_inputs = false;          // relation to the nearest face of the body within body_radius: node_features.hpp
   bool force_inputs = false;         // GraphState::force, its length l compressed to log(1 + l / 1 mm)
   bool acceleration_inputs = false;  // GraphState::acceleration, after these
   bool pass_inputs = false;          // GraphState::guess - (x + velocity), and the flag GraphState::pass
+  bool guess_inputs = false;         // the guess, and the solver's forces there: node_features.hpp
   double contour_force = 0;          // weight of the intersection contours in that force [N/m]; 0: none
 
   // Mesh and coarse edges: x_s - x_r 3 + 1, rest 3 + 1 or 1, (dt) | (is_init,) bending, mu, lambda.
@@ -112,7 +119,8 @@ struct FeatureWidths {
   int all = 0, normalised = 0;
 };
 FeatureWidths node_widths(const FeatureOptions&);
-int objective_columns(const FeatureOptions&);           // body, force, move and acceleration of a node
+int objective_columns(const FeatureOptions&);           // body, force, move, guess and acceleration of a node
+bool sees_accelerations(const FeatureOptions&);         // whether GraphState::acceleration is among what it sees
 FeatureWidths mesh_edge_widths(const FeatureOptions&);  // coarse edges too
 FeatureWidths body_edge_widths(const FeatureOptions&);
 FeatureWidths cloth_edge_widths(const FeatureOptions&);

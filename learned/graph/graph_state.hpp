@@ -33,10 +33,17 @@ struct GraphState {
   bool no_cloth_edges = false;              // no edges of cloth with cloth; the authors' training samples begin so
   bool no_space_edges = false;              // no edges between vertices near each other
 
-  // For models that see the objective (FeatureOptions::force_inputs, pass_inputs, strain_inputs).
-  Points guess;  // start of this pass, the result of the last; empty: x + velocity, pinned vertices at target
+  // For models that see the objective (FeatureOptions::force_inputs, pass_inputs, strain_inputs, guess_inputs).
+  // Start of this pass: the result of the last one, or in the first the carried guess (OutputBase::carried). Empty: x +
+  // velocity, pinned vertices at target.
+  Points guess;
   Points force;  // minus the objective's gradient over its diagonal, at the guess [m]; empty: zero
   int pass = 0;  // number of the pass in this frame, from 0
+
+  Points elastic;  // the motion by elastic forces alone, from the guess (elastic_motion); empty: zero
+
+  // Turns the output of each vertex into space (OutputBase::carried); empty: not at all.
+  std::vector<Mat3> frames;
 };
 
 }  // namespace selvedge

@@ -20,6 +20,7 @@ void check_sizes(const GraphScene& scene, const RestGraph& rest, const GraphStat
       (state.guess.rows() > 0 && state.guess.rows() != cloth) ||
       (state.force.rows() > 0 && state.force.rows() != cloth) ||
       (state.acceleration.rows() > 0 && state.acceleration.rows() != cloth) ||
+      (state.elastic.rows() > 0 && state.elastic.rows() != cloth) ||
       wrong({state.body.rows(), state.body_previous.rows(), state.body_target.rows()}, body))
     throw Error("a state has another number of vertices than its scene", "graph of a learned stepper", "");
 }
@@ -32,7 +33,7 @@ bool is_usable(const Points& points) { return (points.array().abs() < largest).a
 std::string complaint(const GraphState& state) {
   if (!is_usable(state.x) || !is_usable(state.previous) || !is_usable(state.velocity) || !is_usable(state.target))
     return "a position or velocity of the cloth is not finite or far too large";
-  if (!is_usable(state.guess) || !is_usable(state.force))
+  if (!is_usable(state.guess) || !is_usable(state.force) || !is_usable(state.elastic))
     return "a guess or a force on the cloth is not finite or far too large";
   if (!is_usable(state.acceleration)) return "an acceleration of the cloth is not finite or far too large";
   if (!is_usable(state.body) || !is_usable(state.body_previous) || !is_usable(state.body_target))

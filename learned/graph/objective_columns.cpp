@@ -45,6 +45,22 @@ Eigen::RowVector3f compressed(const Vec3& force) {
       .cast<float>();
 }
 
+// guess - x, then the elastic and the inertial forces over the mass, times dt^2 [m].
+void fill_guess_columns(const GraphScene& scene, const GraphState& state, const SeenPositions& seen,
+                        const Points& guess, const Points& inertial, int first, FeatureRows& nodes) {
+  const double dt2 = state.timestep * state.timestep;
+#pragma omp parallel for schedule(static, 256)
+  for (int v = 0; v < scene.cloth.vertex_count; ++v) {
+    auto features = nodes.row(v);
+    features.segment<3>(first) = (guess.row(v) - seen.x.row(v)).cast<float>();
+    if (scene.types[static_cast<std::size_t>(v)] == pinned_vertex) continue;
+    if (state.elastic.rows() > 0) features.segment<3>(first + 3) = compressed(row(state.elastic, v));
+    Vec3 left = row(inertial, v) - row(guess, v);
+    if (state.acceleration.rows() > 0) left += dt2 * row(state.acceleration, v);
+    features.segment<3>(first + 6) = compressed(left);
+  }
+}
+
 }  // namespace
 
 void fill_objective_columns(const GraphScene& scene, const GraphState& state, const SeenPositions& seen,
@@ -75,7 +91,9 @@ void fill_objective_columns(const GraphScene& scene, const GraphState& state, co
   if (options.pass_inputs) {
     graph.nodes.topRows(cloth).middleCols<3>(column) = (guess - inertial).cast<float>();
     graph.nodes.topRows(cloth).col(flag).setConstant(static_cast<float>(state.pass));
+    column += 3;
   }
+  if (options.guess_inputs) fill_guess_columns(scene, state, seen, guess, inertial, column, graph.nodes);
 }
 
 }  // namespace selvedge

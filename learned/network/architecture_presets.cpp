@@ -130,16 +130,23 @@ FeatureOptions own_features() {
   return options;
 }
 
-// Our networks for two cores. `contact` adds vertex-face edges of cloth with cloth. `forces` adds SENC's inputs:
+// The inputs with more. `contact` adds vertex-face edges of cloth with cloth. `forces` adds SENC's inputs:
 // accelerations by forces without contact, and edges in space.
-Architecture own(const std::string& name, int width, int steps, bool contact, bool forces = false) {
+FeatureOptions own_features(bool contact, bool forces) {
+  FeatureOptions options = own_features();
+  options.cloth_edges = contact;
+  options.acceleration_inputs = options.space_edges = forces;
+  return options;
+}
+
+// Our networks for two cores.
+Architecture own(const std::string& name, int width, int steps, const FeatureOptions& features) {
+  const bool contact = features.cloth_edges, forces = features.space_edges;
   Architecture a;
   a.name = name;
   a.width = width;
   a.hidden_layers = 1;
-  a.features = own_features();
-  a.features.cloth_edges = contact;
-  a.features.acceleration_inputs = a.features.space_edges = forces;
+  a.features = features;
   a.node_inputs = node_widths(a.features).all;
   const FeatureWidths mesh = mesh_edge_widths(a.features), cloth = cloth_edge_widths(a.features);
   add_edges(a, "mesh", mesh.all, mesh.normalised, {"mesh_edge"});
@@ -162,11 +169,25 @@ Architecture own(const std::string& name, int width, int steps, bool contact, bo
   return a;
 }
 
+// For a frame on two cores: one pass beside the carried guess. In place of the objective's force it sees the guess and
+// what is left of the solver's forces there, for which nothing is searched but the nearest faces of the body.
+Architecture student() {
+  FeatureOptions features = own_features();
+  features.base = OutputBase::carried;
+  features.force_inputs = features.pass_inputs = false;
+  features.guess_inputs = true;
+  Architecture a = own("student", 32, 4, features);
+  a.integration = Integration::start_flag;  // no settling frame
+  a.passes = 1;
+  return a;
+}
+
 }  // namespace
 
 std::vector<std::string> preset_names() {
   return {"hood", "hood_cvpr", "fine15",        "fine48",     "contourcraft",      "contourcraft_paper",
-          "senc", "small",     "small_contour", "small_senc", "small_senc_layers", "tiny"};
+          "senc", "small",     "small_contour", "small_senc", "small_senc_layers", "student",
+          "tiny"};
 }
 
 Architecture architecture_preset(const std::string& name) {
@@ -178,9 +199,11 @@ Architecture architecture_preset(const std::string& name) {
   if (name == "contourcraft") return contour(name, contourcraft_features(), {"0", "1", "2", "3"}, {"3"});
   if (name == "contourcraft_paper") return contour(name, contourcraft_paper_features(), {"0", "1"}, {"0", "1"});
   if (name == "senc") return senc();
-  if (name == "small" || name == "small_contour") return own(name, 64, 6, name == "small_contour");
-  if (name == "small_senc" || name == "small_senc_layers") return own(name, 64, 6, name == "small_senc_layers", true);
-  if (name == "tiny") return own(name, 32, 3, true);
+  if (name == "small" || name == "small_contour") return own(name, 64, 6, own_features(name == "small_contour", false));
+  if (name == "small_senc" || name == "small_senc_layers")
+    return own(name, 64, 6, own_features(name == "small_senc_layers", true));
+  if (name == "tiny") return own(name, 32, 3, own_features(true, false));
+  if (name == "student") return student();
   std::string known;
   for (const std::string& preset : preset_names()) known += (known.empty() ? "" : ", ") + preset;
   throw Error("no network of this name", name, "choose one of " + known);

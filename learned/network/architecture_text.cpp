@@ -54,6 +54,11 @@ struct FieldWriter {
   void operator()(const std::string& field, const std::vector<Entry>& entries) {
     (*this)(field, static_cast<int>(entries.size()));
   }
+  // A field that older texts lack: it is written only where it differs from what they mean.
+  template <class Value, class... Names>
+  void later(const std::string& field, Value value, Value of_old, const Names&... names) {
+    if (value != of_old) (*this)(field, value, names...);
+  }
 };
 
 // Parses the lines of a text and gives each field once.
@@ -118,6 +123,11 @@ class FieldReader {
     if (count < 0 || count > most_entries) fail(field, std::to_string(count) + " is no possible count");
     entries.resize(static_cast<std::size_t>(count));
   }
+  template <class Value, class... Names>
+  void later(const std::string& field, Value& value, Value of_old, const Names&... names) {
+    value = of_old;
+    if (fields_.contains(field)) (*this)(field, value, names...);
+  }
 
  private:
   std::string where_;
@@ -175,6 +185,8 @@ void visit_features(Visitor& visit, Options& f) {
   visit("features.space.rest_pairs", f.space.rest_pairs);
   visit("features.space.nearest", f.space.nearest);
   visit("features.space.pairs_per_vertex", f.space.pairs_per_vertex);
+  visit.later("features.base", f.base, OutputBase::motion, std::vector<std::string>{"motion", "carried"});
+  visit.later("features.guess_inputs", f.guess_inputs, false);
 }
 
 template <class Visitor, class Value>

@@ -4,8 +4,6 @@
 
 #include "collision/geometry/stop_scope.hpp"
 #include "learned/network/engine_kernels.hpp"
-#include "learned/network/graph_plan.hpp"
-#include "learned/network/latent_rows.hpp"
 #include "learned/network/packed_network.hpp"
 
 namespace selvedge {
@@ -37,11 +35,11 @@ struct Pass {
   const PackedNetwork& network;
   const EngineKernels& kernels;
   const Graph& graph;
-  GraphPlan plan;
-  LatentRows nodes;
-  std::vector<LatentRows> edges;      // one per set, sorted by receiver
-  LatentRows to_receiver, to_sender;  // products of the nodes in the first layers of the current selection
-  std::vector<LatentRows> sums;       // one per key of a step, with one row per receiver
+  const GraphPlan& plan;
+  LatentRows& nodes;
+  std::vector<LatentRows>& edges;
+  LatentRows &to_receiver, &to_sender;
+  std::vector<LatentRows>& sums;
 
   int width() const { return network.architecture.width; }
 };
@@ -219,7 +217,7 @@ void encode(Pass& pass, bool all) {
     if (!all && !is_used(pass.plan, s)) continue;
     const EdgeSet& set = pass.graph.edge_sets[s];
     const int encoder = encoder_of(a, set.key), rows = static_cast<int>(set.senders.size());
-    pass.edges[s] = LatentRows(rows, a.width);
+    pass.edges[s].reshape(rows, a.width);
     evaluate_rows(pass, pass.network.encoders[encoder], set.features.data(), a.encoders[encoder].inputs,
                   &pass.plan.order[s], rows, pass.edges[s].values.data(), pass.edges[s].stride);
   }
@@ -231,14 +229,15 @@ void allocate_passes(Pass& pass) {
     most_receivers = std::max(most_receivers, selection.receivers.size());
     most_senders = std::max(most_senders, selection.senders.size());
   }
-  pass.to_receiver = LatentRows(static_cast<int>(most_receivers), pass.width());
-  pass.to_sender = LatentRows(static_cast<int>(most_senders), pass.width());
+  pass.nodes.reshape(static_cast<int>(pass.graph.nodes.rows()), pass.width());
+  pass.edges.resize(pass.graph.edge_sets.size());
+  pass.to_receiver.reshape(static_cast<int>(most_receivers), pass.width());
+  pass.to_sender.reshape(static_cast<int>(most_senders), pass.width());
   for (const std::vector<int>& step : pass.plan.steps)
     for (std::size_t k = 0; k < step.size(); ++k) {
       if (pass.sums.size() <= k) pass.sums.emplace_back();
       const std::size_t rows = step[k] < 0 ? 0 : pass.plan.selections[step[k]].receivers.size();
-      LatentRows wanted(static_cast<int>(rows), pass.width());
-      if (wanted.values.size() > pass.sums[k].values.size()) pass.sums[k] = std::move(wanted);
+      pass.sums[k].reshape(static_cast<int>(rows), pass.width());
     }
 }
 
@@ -260,14 +259,44 @@ std::vector<FeatureRows> copy_edges(const Pass& pass) {
   return copies;
 }
 
+bool has_edges_of(const Graph& graph, const EngineMemory& memory) {
+  return graph.nodes.rows() == memory.node_count && graph.cloth_nodes == memory.cloth_nodes &&
+         std::ranges::equal(graph.edge_sets, memory.ends, [](const EdgeSet& a, const EdgeSet& b) {
+           return a.key == b.key && a.senders == b.senders && a.receivers == b.receivers;
+         });
+}
+
+// Plans anew where the edges are others than in the last run.
+void plan_edges(const Architecture& a, const Graph& graph, EngineMemory& memory) {
+  if (has_edges_of(graph, memory)) return;
+  memory.node_count = -1;  // nothing is known if an exception leaves the plan half made
+  memory.plan = plan_graph(a, graph, edges_in_chunk);
+  memory.ends.clear();
+  for (const EdgeSet& set : graph.edge_sets) memory.ends.push_back({set.key, set.senders, set.receivers, {}, {}});
+  memory.cloth_nodes = graph.cloth_nodes;
+  memory.node_count = graph.nodes.rows();
+}
+
 }  // namespace
 
 FeatureRows infer(const PackedNetwork& network, const Graph& graph, LatentTrace* trace) {
+  EngineMemory memory;
+  return infer(network, graph, memory, trace);
+}
+
+FeatureRows infer(const PackedNetwork& network, const Graph& graph, EngineMemory& memory, LatentTrace* trace) {
   const Architecture& a = network.architecture;
   check_graph(a, graph);
-  Pass pass{network, kernels_for(network.set), graph, plan_graph(a, graph, edges_in_chunk), {}, {}, {}, {}, {}};
-  pass.nodes = LatentRows(static_cast<int>(graph.nodes.rows()), a.width);
-  pass.edges.resize(graph.edge_sets.size());
+  plan_edges(a, graph, memory);
+  Pass pass{network,
+            kernels_for(network.set),
+            graph,
+            memory.plan,
+            memory.nodes,
+            memory.edges,
+            memory.to_receiver,
+            memory.to_sender,
+            memory.sums};
   allocate_passes(pass);
   encode(pass, trace != nullptr);
   if (trace) *trace = {{copy_nodes(pass)}, copy_edges(pass), {}};

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "learned/network/graph_plan.hpp"
+#include "learned/network/latent_rows.hpp"
 #include "learned/network/weights.hpp"
 
 namespace selvedge {
@@ -10,6 +12,19 @@ namespace selvedge {
 struct LatentTrace {
   std::vector<FeatureRows> nodes;                    // after the encoder and after each step
   std::vector<FeatureRows> edges_first, edges_last;  // one per set of the graph: after its encoder, and at the end
+};
+
+// Memory between runs of one network. It saves time and changes nothing: a graph with the edges of the last one has its
+// plan, and memory is allocated once.
+struct EngineMemory {
+  std::vector<EdgeSet> ends;  // of the last graph, without features
+  Eigen::Index node_count = -1;
+  int cloth_nodes = 0;
+  GraphPlan plan;
+  LatentRows nodes;
+  std::vector<LatentRows> edges;      // one per set, sorted by receiver
+  LatentRows to_receiver, to_sender;  // products of the nodes in the first layers of the current selection
+  std::vector<LatentRows> sums;       // one per key of a step, with one row per receiver
 };
 
 struct PackedNetwork;
@@ -25,6 +40,7 @@ struct PackedNetwork;
 // 2021, "concat trick"). Memory beside the packed weights: a latent per node and edge, a sum per node that receives
 // edges of a set, and two products per node, in floats.
 FeatureRows infer(const PackedNetwork&, const Graph&, LatentTrace* = nullptr);
+FeatureRows infer(const PackedNetwork&, const Graph&, EngineMemory&, LatentTrace* = nullptr);
 
 // Floating-point operations of the matrix products in `infer`. A multiplication with addition counts as two.
 double count_operations(const Architecture&, const Graph&);

@@ -21,6 +21,7 @@ PlanLine cloth_edges_line(const Scene& scene, const FeatureOptions& options) {
 }
 
 PlanLine settling_line(const Architecture& architecture, bool settle) {
+  if (!may_settle(architecture)) return {"settling pass", false, "the network goes on from the carried guess"};
   if (architecture.integration == Integration::relaxation_frame)
     return {"settling pass", true, "first, out of the body and 1/3 s long, as HOOD starts"};
   return {"settling pass", settle,
@@ -46,7 +47,7 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
   if (options.space_edges)
     lines.push_back({"space edges", true, "between vertices of cloth that are near each other and no mesh edge joins"});
   for (const std::string& text : learned_scene(scene).clamped) lines.push_back({"material", false, text});
-  const bool forces = options.acceleration_inputs;
+  const bool forces = sees_accelerations(options);
   if (forces && features_of(scene).wind) lines.push_back({"wind", true, "on each triangle, among the inputs"});
   for (const PlanLine& line : ignored_lines(scene, learned_traits(architecture))) lines.push_back(line);
   lines.push_back(

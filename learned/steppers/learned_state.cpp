@@ -1,5 +1,8 @@
 #include "learned/steppers/learned_state.hpp"
+
+#include "learned/graph/carried_frames.hpp"
 #include "physics/energies/external.hpp"
+#include "physics/steppers/carried_stepper.hpp"
 
 namespace selvedge {
 namespace {
@@ -56,6 +59,19 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
   return state;
 }
 
+void set_carried_base(const Scene& scene, const State& from, const Drive& drive, double dt, GraphState& state) {
+  state.guess = carried_guess(scene, from, drive, dt);
+  state.frames.clear();
+  const MemoryRows* before = carried_targets(from);
+  if (before && drive.skinned_targets.rows() > 0)
+    state.frames = turned_frames(scene.surface, *before, drive.skinned_targets);
+}
+
+void carry_frame(const FeatureOptions& features, const State& from, const Drive& drive, State& to) {
+  carry_frame(from, to);
+  if (features.base == OutputBase::carried) replace_blocks("carried", carried_memory(from, drive, to.x), to.memory);
+}
+
 void carry_frame(const State& from, State& to) {
   replace_blocks("learned",
                  {{carried_block, to.x - from.x, RowsOf::vertices},
@@ -64,13 +80,15 @@ void carry_frame(const State& from, State& to) {
                  to.memory);
 }
 
-StepEnd learned_end(const Scene& scene, const State& from, const Drive& drive, const GraphState& state,
-                    const Points& seen, const NextCloth& next) {
+StepEnd learned_end(const Scene& scene, const FeatureOptions& features, const State& from, const Drive& drive,
+                    const GraphState& state, const Points& seen, const NextCloth& next) {
   StepEnd end{next.x, next.velocity / learned_dt, drive.obstacles};
   for (const int pin : scene.pins) end.v.row(pin) = (next.x.row(pin) - from.x.row(pin)) / learned_dt;
   end.memory = {{carried_block, next.velocity, RowsOf::vertices},
                 {previous_block, seen, RowsOf::vertices, true},
                 {body_block, state.body, RowsOf::obstacle_vertices, true}};
+  if (features.base == OutputBase::carried)
+    for (MemoryBlock& block : carried_memory(from, drive, next.x)) end.memory.push_back(std::move(block));
   return end;
 }
 

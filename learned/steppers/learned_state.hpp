@@ -31,12 +31,18 @@ GraphState graph_state(const Scene&, const State& from, const Drive&);
 
 // The end of a network's frame. `seen` has the positions that the network read (seen_positions.hpp). Velocities in m/s
 // are those that the network carries; velocities of pinned vertices are their motion.
-StepEnd learned_end(const Scene&, const State& from, const Drive&, const GraphState&, const Points& seen,
-                    const NextCloth&);
+StepEnd learned_end(const Scene&, const FeatureOptions&, const State& from, const Drive&, const GraphState&,
+                    const Points& seen, const NextCloth&);
+
+// For a network whose output is added to the carried guess (OutputBase::carried): sets the state's guess to that, and
+// its frames to how the skinned targets turned since the last frame. Reads what carried_memory left in `from`.
+void set_carried_base(const Scene&, const State& from, const Drive&, double dt, GraphState&);
 
 // For a step that another stepper made: writes into `to` the memory that a network's step would have left, so that no
 // roll-out begins there. The velocity is the cloth's motion in the frame.
 void carry_frame(const State& from, State& to);
+// The same for a network with these features, of which some remember the carried guess too.
+void carry_frame(const FeatureOptions&, const State& from, const Drive&, State& to);
 
 // Sets the velocities that a network carries for these vertices to those of State::v. Does nothing to a state that no
 // network made.

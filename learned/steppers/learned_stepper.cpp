@@ -1,9 +1,12 @@
 #include "learned/steppers/learned_stepper.hpp"
 
+#include <utility>
+
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/gradients/torch_network.hpp"
+#include "learned/graph/elastic_motion.hpp"
 #include "learned/graph/make_graph.hpp"
 #include "learned/losses/force_input.hpp"
 #include "learned/network/engine.hpp"
@@ -29,11 +32,13 @@ class LearnedStepper final : public Stepper {
         features_(architecture.features),
         integration_(architecture.integration),
         passes_(architecture.passes),
-        settles_(options.settle || architecture.integration == Integration::relaxation_frame),
+        settles_(may_settle(architecture) &&
+                 (options.settle || architecture.integration == Integration::relaxation_frame)),
         tables_(weights.tables),
         network_(pack_network(architecture, weights)),
         torch_(torch_network_for(options.device, architecture, weights)),
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
+        elastic_(features_.guess_inputs ? make_elastic(scene) : Elastic{}),
         losses_(features_.force_inputs ? loss_garment(scene) : LossGarment{}),
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
         traits_(learned_traits(architecture)),
@@ -61,6 +66,7 @@ class LearnedStepper final : public Stepper {
   std::shared_ptr<const PackedNetwork> network_;
   std::unique_ptr<TorchNetwork> torch_;  // in place of the kernels
   GraphScene graph_scene_;
+  Elastic elastic_;     // of networks that see the elastic forces
   LossGarment losses_;  // of networks with the objective's force as an input
   RestGraph rest_;
   StepperTraits traits_;
@@ -68,15 +74,19 @@ class LearnedStepper final : public Stepper {
   // Memory that is used again:
   GraphSearch search_;
   Graph graph_;
+  EngineMemory engine_;
   GraphReport found_;
   LossSearch force_search_;
+  AssemblyScratch scratch_;
 };
 
-// The objective's force at the guess, for networks that have it as an input.
+// The forces at the guess that the network has among its inputs: the objective's, and the elastic ones of the scene.
 void LearnedStepper::show_force(GraphState& state) {
-  if (!features_.force_inputs) return;
+  if (!features_.force_inputs && !features_.guess_inputs) return;
   const SeenPositions seen = seen_positions(rest_, state, features_);
   const Points guess = guess_of(rest_, state, seen, features_);
+  if (features_.guess_inputs) state.elastic = elastic_motion(elastic_, graph_scene_, state.timestep, guess, scratch_);
+  if (!features_.force_inputs) return;
   LossInputs inputs = loss_inputs(losses_, graph_scene_, state, seen, guess);
   inputs.is_initial = state.timestep > learned_dt * 1.5;
   inputs.contours = !state.no_cloth_edges;
@@ -92,7 +102,7 @@ bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& repo
     make_graph(graph_scene_, rest_, state, features_, tables_, search_, graph_, found_);
     report.seconds.graph += watch.lap();
     if (!found_.refused.empty()) return false;
-    const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_);
+    const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_, engine_);
     next = integrate(rest_, state, features_, tables_.output, output);
     report.seconds.network += watch.lap();
     if (!is_near(next.x) || !is_near(next.velocity)) return false;
@@ -140,6 +150,10 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
   report.collision.pairs_before = from.clean ? 0 : -1;
 
   GraphState state = graph_state(scene_, from, drive);
+  if (features_.base == OutputBase::carried) {
+    const Timed timed(report.seconds.graph);
+    set_carried_base(scene_, from, drive, dt, state);
+  }
   if (!is_near(state.x) || !is_near(state.velocity) || !is_near(state.target) || !is_near(state.body) ||
       !is_near(state.body_target))
     return report;
@@ -151,13 +165,15 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
   if (!predict(state, next, report)) return report;
 
   report.reason = Reason::none;
-  finish_step(from, drive, dt, learned_end(scene_, from, drive, state, seen_positions(rest_, state, features_).x, next),
-              to, report);
+  StepEnd end = learned_end(scene_, features_, from, drive, state, seen_positions(rest_, state, features_).x, next);
+  finish_step(from, drive, dt, std::move(end), to, report);
   energy_.label(from, drive, to, report);
   return report;
 }
 
 }  // namespace
+
+bool may_settle(const Architecture& architecture) { return architecture.features.base == OutputBase::motion; }
 
 StepperTraits learned_traits(const Architecture& architecture) {
   StepperTraits traits{.name = "learned",
@@ -166,7 +182,7 @@ StepperTraits learned_traits(const Architecture& architecture) {
                        .may_leave_out_cloths = false,
                        .ignores = joint_names()};
   for (const char* force : {"stiffness damping", "mass damping"}) traits.ignores.push_back(force);
-  if (!architecture.features.acceleration_inputs) traits.ignores.push_back("wind");
+  if (!sees_accelerations(architecture.features)) traits.ignores.push_back("wind");
   return traits;
 }
 

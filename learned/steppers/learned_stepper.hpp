@@ -18,6 +18,10 @@ struct LearnedOptions {
   NetworkDevice device = NetworkDevice::cpu;
 };
 
+// Whether a roll-out may begin with a settling pass: a network that goes on from the carried guess takes the cloth as
+// it is.
+bool may_settle(const Architecture&);
+
 // The traits of the stepper with such a network.
 StepperTraits learned_traits(const Architecture&);
 
@@ -25,6 +29,9 @@ StepperTraits learned_traits(const Architecture&);
 // relaxation frame (parity README, 18): the cloth is pushed out of the body and falls to rest in a pass that counts 1/3
 // s while the body stands still. ContourCraft does so, with its flag is_init and without cloth-cloth edges, only where
 // the options ask for it.
+//
+// A network whose output is added to the carried guess (OutputBase::carried) never settles, keeps the memory of that
+// guess beside its own, and with an output of zero makes the carried guess.
 //
 // A network with inputs for accelerations (SENC) gets those of the drive and of the wind. Others know no wind, and no
 // gravity but that of their training. None knows springs or damping. The stepper neither detects nor undoes

@@ -65,8 +65,7 @@ StepReport CarriedStepper::take_step(const State& from, const Drive& drive, doub
 
 Points carried_guess(const Scene& scene, const State& from, const Drive& drive, double dt,
                      const CarriedOptions& options) {
-  const MemoryRows *target = find_rows(from.memory, target_block, from.x.rows()),
-                   *motion = find_rows(from.memory, motion_block, from.x.rows());
+  const MemoryRows *target = carried_targets(from), *motion = find_rows(from.memory, motion_block, from.x.rows());
   Points x = from.x;
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
     if (!has_target(drive.skinned_targets, v))
@@ -81,11 +80,12 @@ Points carried_guess(const Scene& scene, const State& from, const Drive& drive, 
   return x;
 }
 
+const MemoryRows* carried_targets(const State& state) { return find_rows(state.memory, target_block, state.x.rows()); }
+
 std::vector<MemoryBlock> carried_memory(const State& from, const Drive& drive, const Points& x) {
   const Points now = all_targets(drive, x);
   Points motion = Points::Zero(x.rows(), 3);
-  if (const MemoryRows* before = find_rows(from.memory, target_block, x.rows()))
-    motion = (x - from.x) - (now - Points(*before));
+  if (const MemoryRows* before = carried_targets(from)) motion = (x - from.x) - (now - Points(*before));
   return {{target_block, now, RowsOf::vertices, true}, {motion_block, motion, RowsOf::vertices}};
 }
 

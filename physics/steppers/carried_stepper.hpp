@@ -19,6 +19,9 @@ Points carried_guess(const Scene&, const State& from, const Drive&, double dt, c
 // end of the step.
 std::vector<MemoryBlock> carried_memory(const State& from, const Drive&, const Points& x);
 
+// The targets that carried_memory left in the state; null: none.
+const MemoryRows* carried_targets(const State&);
+
 // The baseline that a learned stepper has to beat: the carried guess, then Bridson's response to contact. It solves
 // nothing and ignores every elastic force; dressed cloth has no gravity either. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_carried_stepper(const Scene&, const CarriedOptions& = {});

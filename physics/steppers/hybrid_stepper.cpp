@@ -22,6 +22,7 @@ namespace {
 constexpr int usual_newton = 2;  // iterations of the mode `after_k`
 
 bool asks_for_positions(HybridMode mode) { return mode != HybridMode::fallback; }
+bool solves_from_proposal(HybridMode mode) { return mode == HybridMode::refined || mode == HybridMode::rough; }
 
 std::function<double()> clock_of(const HybridParts& parts) {
   if (parts.clock) return parts.clock;
@@ -36,8 +37,8 @@ void check_pair(const HybridParts& parts, HybridMode mode) {
   };
   if (proposer.only_dt && !parent.accepts(*proposer.only_dt))
     refuse("`" + proposer.name + "` and `" + parent.name + "` take no common time step", "join others");
-  if (mode == HybridMode::refined && !refiner.traits().honours_extras)
-    refuse("`" + refiner.traits().name + "` takes no first guess, which the mode `refined` needs",
+  if (solves_from_proposal(mode) && !refiner.traits().honours_extras)
+    refuse("`" + refiner.traits().name + "` takes no first guess, which the modes `refined` and `rough` need",
            "take another mode, or a stepper that honours extras");
   if (asks_for_positions(mode) && proposer.past_frames > 0 && !parts.hand_over)
     refuse("`" + proposer.name + "` remembers frames and is not told of those that it has not made",
@@ -158,12 +159,14 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   const ResolveReport resolved = resolve_proposal(contact_, options, work.from, nullptr, x, obstacles);
   add(resolved, work.report);
   if (!resolved.clean) return Verdict::penetrating;
-  if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
+  // What the elastic tests would find is met in the mode `response` by the bound of the energy, after the audits.
+  if (options_.mode != HybridMode::response)
+    if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
   work.report.substeps = 1;
   work.report.collision.pairs_before = 0;
   Points v = (x - work.from.x) / work.dt;
   finish_step(work.from, work.drive, work.dt, {std::move(x), std::move(v), std::move(obstacles)}, work.to, work.report);
-  if (parts_.hand_over) parts_.hand_over(work.from, work.to);
+  if (parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
   return audited(work, Verdict::admitted);
 }
 
@@ -175,7 +178,7 @@ Verdict HybridStepper::refine(Work& work, const Points& x) {
   work.report = refiner.step(work.from, work.drive, work.dt, work.to, extras);
   work.report.seconds += proposal;
   if (work.report.status != StepStatus::accepted) return Verdict::not_made;
-  if (parts_.hand_over) parts_.hand_over(work.from, work.to);
+  if (parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
   return audited(work, Verdict::refined);
 }
 
@@ -195,7 +198,7 @@ Verdict HybridStepper::propose(Work& work) {
     if (!search_along(*line_, contact_, work.from, work.drive, work.dt, options_.gate_steps, x))
       return Verdict::energy_gain;
   }
-  return options_.mode == HybridMode::refined ? refine(work, x) : correct(work, std::move(x));
+  return solves_from_proposal(options_.mode) ? refine(work, x) : correct(work, std::move(x));
 }
 
 // A proposal with too many near pairs counts as penetrating.
@@ -221,7 +224,7 @@ void HybridStepper::take_parent_step(Work& work) {
   const PhaseTimes before = work.report.seconds;
   work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
   work.report.seconds += before;
-  if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.to);
+  if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
 }
 
 void HybridStepper::note_times(bool asked, bool taken, double proposal, double parent) {

@@ -15,7 +15,9 @@ enum class HybridMode {
   corrected,  // as fallback, after the response to contact has corrected the motion
   refined,    // a conventional solve begins at the proposal
   gated,      // as corrected, after a line search of the step's potential from free flight to the proposal
-  after_k     // as gated, but the line begins where k Newton iterations end
+  after_k,    // as gated, but the line begins where k Newton iterations end
+  response,   // as corrected, judged by motion, audits and energy alone
+  rough       // one rough solve begins at the proposal, judged in the same way
 };
 
 // Options of the stepper `hybrid`. Members are described where keys are bound to them: pipeline/scene/config_run.cpp.
@@ -32,12 +34,12 @@ struct HybridOptions {
 };
 
 // The steppers inside a hybrid. `proposer` makes steps that are judged; `parent` takes the steps whose proposals are
-// refused. `refiner` makes the solves of the mode `refined`; null: the parent does. `hand_over` records a step that the
-// proposer has not made in its memory of the state; a proposer that remembers frames needs it in all modes but
-// `fallback`.
+// refused. `refiner` makes the solves of the modes `refined` and `rough`; null: the parent does. `hand_over` records a
+// step that the proposer has not made in its memory of the state; a proposer that remembers frames needs it in all
+// modes but `fallback`.
 struct HybridParts {
   std::unique_ptr<Stepper> proposer, parent, refiner = {};
-  std::function<void(const State& from, State& to)> hand_over = {};
+  std::function<void(const State& from, const Drive&, State& to)> hand_over = {};
   std::function<double()> clock = {};  // time so far, for `stop_when_slow` [s]; empty: the machine's clock
 };
 

@@ -43,7 +43,7 @@ std::vector<PlanLine> icm_lines(const Setup& setup) {
           {"obstacles that give way", false, untouched + ": they are where they are wanted"}};
 }
 
-// What the scene says of the number and the accuracy of solves is replaced.
+// What the scene says of the integrator, and of the number and the accuracy of solves, is replaced.
 ConventionalOptions carried_rough_options(const Setup& setup) {
   ConventionalOptions options = one_rough_solve(setup.run.conventional);
   options.guess = FirstGuess::carried;
@@ -114,12 +114,16 @@ std::unique_ptr<Stepper> conventional_part(const Scene& scene, ConventionalOptio
 MakeStepper hybrid_maker(const Setup& setup) {
   HybridOptions options = setup.run.hybrid;
   options.implicit_euler = setup.run.conventional.implicit_euler;
-  return [options, learned = learned_maker(setup), conventional = setup.run.conventional,
-          recovery = setup.run.recovery](const Scene& scene) {
+  return [options, learned = learned_maker(setup), features = network_of(setup).architecture.features,
+          conventional = setup.run.conventional, recovery = setup.run.recovery](const Scene& scene) {
     HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
     if (options.mode == HybridMode::refined && options.newton)
       parts.refiner = conventional_part(scene, conventional, recovery, options.newton);
-    parts.hand_over = carry_frame;
+    if (options.mode == HybridMode::rough)
+      parts.refiner = conventional_part(scene, one_rough_solve(conventional), recovery);
+    parts.hand_over = [features](const State& from, const Drive& drive, State& to) {
+      carry_frame(features, from, drive, to);
+    };
     return make_hybrid_stepper(scene, std::move(parts), options);
   };
 }
@@ -131,7 +135,9 @@ std::vector<PlanLine> hybrid_lines(const Setup& setup) {
       {HybridMode::corrected, "its motion goes through the response to contact, then the guard"},
       {HybridMode::refined, "a conventional solve begins at it"},
       {HybridMode::gated, "a line search of the step's potential, the response to contact, then the guard"},
-      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"}};
+      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"},
+      {HybridMode::response, "its motion goes through the response to contact, then audits and energy decide"},
+      {HybridMode::rough, "one rough solve begins at it, then audits and energy decide"}};
   const HybridOptions& hybrid = setup.run.hybrid;
   const bool guarded = hybrid.mode != HybridMode::refined;
   std::vector<PlanLine> lines{

@@ -75,7 +75,7 @@ std::vector<std::string> unlike_training(const Scene& scene, const TrainedWith& 
 std::vector<std::string> network_warnings(const Scene& scene, const Vec3& gravity, const WeightFile& file,
                                           const std::string& name) {
   std::vector<std::string> sentences = unlike_training(scene, trained_with(file.training));
-  if (!file.architecture.features.acceleration_inputs) compare_gravity(gravity, sentences);
+  if (!sees_accelerations(file.architecture.features)) compare_gravity(gravity, sentences);
   if (const long long count = nonfinite_numbers(file.architecture, file.weights); count > 0)
     sentences.push_back(
         fmt::format("{}: {} of the network's numbers are not finite, so that it can make no frame; "

@@ -2,13 +2,38 @@
 
 #include <cmath>
 
+#include "learned/graph/elastic_motion.hpp"
 #include "learned/losses/force_input.hpp"
 #include "learned/steppers/learned_state.hpp"
+#include "physics/steppers/carried_stepper.hpp"
 
 namespace selvedge {
 namespace {
 
 Points wide(const PointsF& x) { return x.cast<double>(); }
+
+// Sets the carried guess as a run would have it. Without a body nothing wears the cloth. Of a settling frame, in which
+// the body stands still, the guess is where the cloth is.
+void set_carried_guess(RollingState& state) {
+  const Roll& roll = state.roll;
+  const bool settling = is_settling(state), after_settling = roll.request.still && state.frame == 1;
+  const int now = settling ? 1 : state.frame + (roll.request.still ? 0 : 1);
+  const auto drive_at = [&](int entry) {
+    const Points targets = wide(roll.cloth[static_cast<std::size_t>(entry)]);
+    Drive drive;
+    drive.pins = targets(roll.scene->scene.pins, Eigen::all);
+    drive.acceleration = roll.forces.acceleration;
+    if (roll.request.with_body) drive.skinned_targets = targets;
+    return drive;
+  };
+  State before, from;
+  before.x = state.now.previous;
+  before.memory = carried_memory({}, drive_at(settling || after_settling ? now : now - 1), before.x);
+  from.x = state.now.x;
+  from.v = state.now.velocity / learned_dt;
+  from.memory = carried_memory(before, drive_at(now), from.x);
+  set_carried_base(roll.scene->scene, from, drive_at(settling ? now : now + 1), learned_dt, state.now);
+}
 
 // Sets the body, and the skinned target of the garment at the end of the frame.
 void set_surroundings(RollingState& state) {
@@ -37,6 +62,8 @@ void set_surroundings(RollingState& state) {
   else
     state.now.acceleration.resize(0, 3);
   state.now.guess.resize(0, 3);
+  state.now.frames.clear();
+  if (roll.carried) set_carried_guess(state);
   state.now.force.resize(0, 3);
   state.now.pass = state.pass = 0;
   state.taught = {};
@@ -112,6 +139,11 @@ bool raw_graph_of(const FrameMaking& making, const FeatureTables& tables, Rollin
     const Points guess = guess_of(scene.rest, state.now, seen, making.features);
     state.now.force = shown_force(inputs_of(state, seen, guess, making.progress), state.pass,
                                   making.features.contour_force, state.losses);
+  }
+  if (making.features.guess_inputs) {
+    const SeenPositions seen = seen_positions(scene.rest, state.now, making.features);
+    state.now.elastic = elastic_motion(scene.elastic, scene.graph, state.now.timestep,
+                                       guess_of(scene.rest, state.now, seen, making.features), state.elastic);
   }
   make_raw_graph(scene.graph, scene.rest, state.now, making.features, tables, state.search, graph, state.found);
   return state.found.refused.empty();

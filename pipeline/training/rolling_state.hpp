@@ -28,6 +28,7 @@ struct RollingState {
   GraphSearch search;
   LossSearch losses;
   GraphReport found;
+  AssemblyScratch elastic;
 };
 
 // Begins a roll-out: at rest and outside the body before a frame of 1/3 s, or with the motion of the clip.

@@ -145,9 +145,12 @@ Architecture trained_architecture(const TrainingOptions& options) {
   FeatureOptions& features = architecture.features;
   features.contour_force = options.contour_force;
   if (features.space_edges) features.space = options.space;
-  if (options.samples.forces.strongest > 0 && !features.acceleration_inputs)
+  if (options.samples.forces.strongest > 0 && !sees_accelerations(features))
     throw Error("the network `" + architecture.name + "` sees no forces", options.name + ": samples.forces.strongest",
-                "take the architecture small_senc, small_senc_layers or senc, or leave the forces out");
+                "take the architecture small_senc, small_senc_layers, senc or student, or leave the forces out");
+  if (architecture.passes > 1 && features.base == OutputBase::carried && !features.pass_inputs)
+    throw Error("the network `" + architecture.name + "` makes a frame in one pass", options.name + ": pool.passes",
+                "give passes: 1");
   features.attraction_edges = options.contact.attraction;
   if (features.cloth_edges && !options.contact.classify) features.contours = ContourRule::all_repel;
   check_architecture(architecture, options.name);

@@ -70,6 +70,7 @@ std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const Ro
   }
   set_springs(scene.springs, made->losses);
   made->rest = make_rest_graph(made->graph, maker.features);
+  if (maker.features.guess_inputs) made->elastic = make_elastic(scene);
   if (request.sheet != HungStart::none)
     made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
   return made;
@@ -171,7 +172,8 @@ SkinnedFrame frame_of(RollMaker& maker, const RollRequest& request, const RollRe
 // Sets gravity and the roll-out's own force. A wind is given by its speed.
 void set_forces(const RollMaker& maker, Roll& roll) {
   const RollRequest& request = roll.request;
-  roll.shows_forces = maker.features.acceleration_inputs;
+  roll.shows_forces = sees_accelerations(maker.features);
+  roll.carried = maker.features.base == OutputBase::carried;
   roll.forces.acceleration = Vec3(0, -maker.options.objective.gravity_strength, 0);
   if (!request.wind) {
     roll.forces.acceleration += request.force;

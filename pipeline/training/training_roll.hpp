@@ -7,6 +7,7 @@
 #include "learned/graph/rest_graph.hpp"
 #include "learned/losses/loss_garment.hpp"
 #include "physics/scene/stepper.hpp"
+#include "physics/solve/assembly.hpp"
 #include "pipeline/training/random_stream.hpp"
 #include "pipeline/training/training_world.hpp"
 
@@ -47,6 +48,7 @@ struct TrainingScene {
   GraphScene graph;
   RestGraph rest;
   LossGarment losses;
+  Elastic elastic;  // of networks that see the elastic forces (FeatureOptions::guess_inputs)
 };
 
 // The prepared world of a roll-out: entry k is frame first_frame - 1 + k of the clip, frames + 2 in all.
@@ -63,6 +65,7 @@ struct Roll {
   int pairs = 0;                                 // intersecting pairs of triangles at a tangled start
   bool space_edges = true;                       // false: no space edges, because cloth has no contact with cloth
   bool shows_forces = false;                     // the network has inputs for accelerations
+  bool carried = false;                          // its output is added to the carried guess
   Drive forces;                                  // acceleration, including gravity, and wind
 };
 

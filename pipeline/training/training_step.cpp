@@ -99,7 +99,7 @@ std::vector<const Graph*> good_graphs(const std::vector<Sample>& samples) {
 // The derivative of the sample's objective by the network's output. Returns false if it is not finite.
 bool output_gradient(const Trainer& trainer, const RollingState& state, Points gradient, FeatureRows& d_output) {
   const TrainingScene& scene = *state.roll.scene;
-  for (const int pin : scene.rest.pinned) gradient.row(pin).setZero();
+  gradient = by_acceleration(scene.rest, state.now, trainer.architecture.features, std::move(gradient));
   const std::vector<float>& deviation = trainer.network.weights.tables.output.deviation;
   double scale = 1;
   if (trainer.options.optimiser.normalise_samples) {

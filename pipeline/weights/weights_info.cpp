@@ -63,7 +63,8 @@ std::string weights_info_text(const WeightsInfo& info) {
     add("steps", fmt::format("{} of {}", count, fmt::join(step.edge_keys, ", ")));
   for (const auto& [name, columns] : statistics_columns(a))
     add("statistics", fmt::format("{}, {} columns", name, columns));
-  add("integration", fmt::format("{}, {} passes a frame", integration_name(a.integration), a.passes));
+  add("integration", fmt::format("{}, {} passes a frame, output added to {}", integration_name(a.integration), a.passes,
+                                 a.features.base == OutputBase::carried ? "the carried guess" : "the motion before"));
   add("constant columns", fmt::format("{}", info.constant_columns));
   add("not finite", fmt::format("{}", info.nonfinite));
   for (const auto& [name, value] : info.file.origin) add(name, value);
@@ -90,6 +91,7 @@ std::string weights_info_json(const WeightsInfo& info) {
                      {"steps", steps},
                      {"statistics", statistics},
                      {"integration", integration_name(a.integration)},
+                     {"base", a.features.base == OutputBase::carried ? "carried" : "motion"},
                      {"passes", a.passes},
                      {"constant_columns", info.constant_columns},
                      {"nonfinite", info.nonfinite},

@@ -211,4 +211,27 @@ TEST_CASE("engine: what is measured is what was run", "[learned]") {
   CHECK(one.operations == count_operations(a, grid_graph(a, 100)));
 }
 
+TEST_CASE("engine: memory between runs changes no bit, whether edges stay or change", "[learned]") {
+  for (const std::string name : {"student", "small_contour"}) {
+    INFO(name);
+    const Architecture a = architecture_preset(name);
+    const auto network = pack_network(a, random_weights(a, 5));
+    EngineMemory memory;
+    Graph graph = random_graph(a, 60, 5, 300, 11);
+    const auto same = [&] { return (infer(*network, graph, memory).array() == infer(*network, graph).array()).all(); };
+    CHECK(same());
+    const GraphPlan& plan = memory.plan;
+    const int* order = plan.order[0].data();
+    graph.nodes *= 0.5f;
+    CHECK(same());
+    CHECK(plan.order[0].data() == order);  // the plan was kept
+    std::swap(graph.edge_sets[0].senders[0], graph.edge_sets[0].senders[1]);
+    CHECK(same());
+    graph = random_graph(a, 47, 0, 250, 12);
+    CHECK(same());
+    graph = random_graph(a, 70, 3, 400, 13);
+    CHECK(same());
+  }
+}
+
 }  // namespace selvedge::test_engine

@@ -90,6 +90,23 @@ TEST_CASE("architecture text: every preset is read back as it was", "[learned]")
   CHECK(back.steps[1].filters[1].near.empty());
 }
 
+TEST_CASE("architecture text: fields that older texts lack are written only where they say something", "[learned]") {
+  const std::string small = architecture_text(architecture_preset("small")),
+                    student = architecture_text(architecture_preset("student"));
+  for (const std::string line : {"features.base: carried\n", "features.guess_inputs: yes\n"}) {
+    CHECK(small.find(line.substr(0, line.find(':'))) == std::string::npos);
+    REQUIRE(student.find(line) != std::string::npos);
+    std::string without = student;
+    without.erase(without.find(line), line.size());
+    CHECK(architecture_text(parse_architecture(without, "text")) == without);
+  }
+  CHECK(parse_architecture(student, "text").features.base == OutputBase::carried);
+  CHECK(parse_architecture(small, "text").features.base == OutputBase::motion);
+  std::string wrong = student;
+  wrong.replace(wrong.find("base: carried"), 13, "base: thrown!");
+  CHECK_THROWS_AS(parse_architecture(wrong, "text"), Error);
+}
+
 TEST_CASE("architecture text: a line that is wrong is an error that names it", "[learned]") {
   const std::string text = architecture_text(tiny());
   const auto changed = [&text](const std::string& from, const std::string& to) {

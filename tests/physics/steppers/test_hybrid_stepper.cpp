@@ -90,7 +90,7 @@ Points noise(const State& from, const Points& solved) {
   return x;
 }
 
-void hand_over(const State& from, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
+void hand_over(const State& from, const Drive&, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
 
 std::unique_ptr<Stepper> hybrid(const Scene& scene, const Propose& propose, const HybridOptions& options = {}) {
   return make_hybrid_stepper(
@@ -132,7 +132,7 @@ Seen follow(Stepper& stepper, const World& w, State state, int frames) {
 }
 
 constexpr std::array all_modes{HybridMode::fallback, HybridMode::corrected, HybridMode::refined, HybridMode::gated,
-                               HybridMode::after_k};
+                               HybridMode::after_k,  HybridMode::response,  HybridMode::rough};
 
 }  // namespace
 
@@ -308,6 +308,56 @@ TEST_CASE("hybrid: parts that lack what a mode needs are refused", "[hybrid]") {
                                        {}},
                                       options),
                   Error);
+}
+
+TEST_CASE("hybrid: behind the response, motion, audits and energy alone decide", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  const auto verdict = [&](HybridMode mode, double size) {
+    const Propose noisy = [size](const State& from, const Points& solved) {
+      Points x = solved;
+      for (Eigen::Index i = 11; i < x.rows(); ++i)
+        x(i, 1) += size * std::sin(17.0 * static_cast<double>(i) + from.frame);
+      return x;
+    };
+    HybridOptions options;
+    options.mode = mode;
+    return follow(*hybrid(w.scene, noisy, options), w, w.state, 2).verdicts.back();
+  };
+  CHECK(verdict(HybridMode::response, 0) == Verdict::admitted);
+  CHECK(verdict(HybridMode::response, 10) == Verdict::moved_too_far);
+  bool elastic = false, energy = false;
+  for (double size = 1e-4; size < 0.05; size *= 2) {
+    INFO("noise of " << size << " m");
+    const Verdict judged = verdict(HybridMode::corrected, size), behind = verdict(HybridMode::response, size);
+    if (behind == Verdict::moved_too_far) continue;
+    CHECK((behind == Verdict::admitted || behind == Verdict::energy_gain));
+    elastic = elastic || (judged == Verdict::unbalanced && behind == Verdict::admitted);
+    energy = energy || behind == Verdict::energy_gain;
+    CHECK(verdict(HybridMode::rough, size) == Verdict::refined);
+  }
+  CHECK(elastic);  // a Jacobi sweep finds noise that stores little energy
+  CHECK(energy);
+}
+
+TEST_CASE("hybrid: a rough step is made by the refiner from the proposal", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  HybridOptions options;
+  options.mode = HybridMode::rough;
+  ConventionalOptions rough = one_rough_solve({});
+  rough.name = "rough";
+  const auto made = [&](const Propose& propose, int frames) {
+    HybridParts parts{std::make_unique<FakeProposer>(w.scene, propose, 1),
+                      make_recovering_conventional_stepper(w.scene),
+                      make_recovering_conventional_stepper(w.scene, rough), hand_over};
+    return follow(*make_hybrid_stepper(w.scene, std::move(parts), options), w, w.state, frames);
+  };
+  const Seen begun = made(as_solved, 3), good = made(as_solved, 4), other = made(frozen, 4);
+  State solved;
+  testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene), begun.state, w.drive, dt, solved);
+  CHECK(good.verdicts.back() == Verdict::refined);
+  CHECK((good.state.x - solved.x).rowwise().norm().maxCoeff() < 0.02);
+  CHECK_FALSE(same_bits(good.state.x, solved.x));
+  CHECK_FALSE(same_bits(good.state.x, other.state.x));
 }
 
 TEST_CASE("hybrid: a refined step is as good as the parent's", "[hybrid]") {

@@ -37,9 +37,9 @@ bool same(const State& a, const State& b) {
 }
 
 // A sheet that hangs by a corner and falls on a ball that moves.
-Setup scene_for(const std::string& kind, const Folder& folder, std::vector<std::string> overrides = {}) {
+Setup scene_for(const std::string& kind, const Folder& folder, std::vector<std::string> overrides = {},
+                const fake::NarrowNetwork& network = fake::narrow_network("contourcraft")) {
   if (kind == "learned" || kind == "hybrid") {
-    const fake::NarrowNetwork network = fake::narrow_network("contourcraft");
     write_weight_file(folder.path / "w.h5", {network.architecture, network.weights, "", {}, ""});
     overrides.push_back("run.learned.weights=w.h5");
   }
@@ -179,6 +179,31 @@ TEST_CASE("known steppers: `carried_rough` makes the frames of the quality `draf
   CHECK(same(rough, end("conventional", "draft")));
   CHECK_FALSE(same(rough, end("conventional", "preview")));
   CHECK(find_rows(rough.memory, "carried.target", rough.x.rows()));
+}
+
+TEST_CASE("known steppers: a network beside the carried guess, behind the response and behind a rough solve",
+          "[known_steppers][student]") {
+  for (const std::string mode : {"response", "rough"}) {
+    INFO(mode);
+    const Folder folder("student_" + mode);
+    const Setup setup = scene_for("hybrid", folder, {"run.hybrid.mode=" + mode}, fake::narrow_network("student", 1e-5));
+    auto kept = make_stepper(setup), dropped = make_stepper(setup);
+    State a = setup.initial, b = setup.initial;
+    int proposed = 0;
+    for (int f = 0; f < 9; ++f) {
+      State to;
+      const StepReport report = testing::frame(setup.scene, *kept, a, setup.drive_at(a.time + dt), dt, to);
+      REQUIRE(report.status == StepStatus::accepted);
+      CHECK(to.clean);
+      proposed += report.verdict == (mode == "rough" ? Verdict::refined : Verdict::admitted);
+      a = to;
+      if (f % 3 == 2) dropped = make_stepper(setup);
+      b = after(*dropped, setup, b, 1);
+      CHECK(same(a, b));
+      CHECK(find_rows(a.memory, "carried.target", a.x.rows()));
+    }
+    CHECK(proposed > 0);
+  }
 }
 
 TEST_CASE("known steppers: what the traits do not accept is refused", "[known_steppers]") {

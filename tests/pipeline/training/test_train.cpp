@@ -215,6 +215,26 @@ TEST_CASE("training: a run leaves its files, and one that is stopped goes on", "
   CHECK_FALSE(pause_training(folder.path / "run", 0.2));
 }
 
+TEST_CASE("training: a network beside the carried guess learns in one pass, and goes on with the same bits",
+          "[training][student]") {
+  const Folder folder("train_student");
+  TrainingOptions options = few_steps();
+  options.architecture = "student";
+  CHECK_THROWS_AS(make_trainer(options), Error);  // two passes
+  options.pool.passes = 1;
+  auto whole = make_trainer(options);
+  const std::vector<float> first = weights_of(*whole);
+  for (int k = 0; k < 7; ++k) train_step(*whole);
+  write_training_checkpoint(folder.path / "checkpoint.h5", *whole, {"a\n", "b\n", 0, 0, 0});
+  for (int k = 0; k < 7; ++k) train_step(*whole);
+  TrainingHistory history;
+  auto resumed = read_training_checkpoint(folder.path / "checkpoint.h5", options, history);
+  for (int k = 0; k < 7; ++k) train_step(*resumed);
+  CHECK(weights_of(*resumed) == weights_of(*whole));
+  CHECK(weights_of(*whole) != first);
+  CHECK(whole->counts.bad == 0);
+}
+
 TEST_CASE("training: what is minimised has the least sum of losses", "[training]") {
   RollMaker& maker = fake::tiny_maker();
   const FrameMaking making = fake::tiny_making();

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "learned/network/architecture.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
@@ -158,6 +159,48 @@ TEST_CASE("rolling states: a roll-out that leaves the garment as worn is over", 
   next.x(5, 1) += 0.7;
   take_pass(making, next, 0.6, state);
   CHECK(state.over);
+}
+
+// The frames of a roll-out in which the cloth follows its skinned target exactly, so that nothing is left of its
+// motion.
+TEST_CASE("training rolls: beside the carried guess a frame begins where the skinned target takes the cloth",
+          "[training][student]") {
+  RollMaker maker = fake::tiny_maker();
+  maker.scenes.clear();
+  FrameMaking making = fake::tiny_making();
+  making.features = maker.features = architecture_preset("student").features;
+  making.passes = 1;
+  RollRequest request;
+  request.first_frame = 40;
+  request.frames = 3;
+  for (const bool still : {false, true}) {
+    request.still = still;
+    RollingState state;
+    begin_roll(make_roll(maker, request), state);
+    const auto target = [&](int entry) -> Points {
+      return state.roll.cloth[static_cast<std::size_t>(entry)].cast<double>();
+    };
+    const std::size_t free = [&] {
+      std::size_t v = 0;
+      while (state.roll.scene->graph.types[v] == pinned_vertex) ++v;
+      return v;
+    }();
+    const auto row_of = [&](const Points& x) { return Vec3(row(x, static_cast<int>(free))); };
+    for (int entry = 1; !state.over; ++entry) {
+      INFO("still " << still << ", entry " << entry);
+      const bool settling = is_settling(state);
+      if (settling) --entry;
+      const Vec3 way = settling ? Vec3(Vec3::Zero()) : Vec3(row_of(target(entry + 1)) - row_of(target(entry)));
+      CHECK((row_of(state.now.guess) - row_of(state.now.x) - way).norm() < 1e-7);
+      CHECK(state.now.frames.size() == static_cast<std::size_t>(state.now.x.rows()));
+      Graph graph;
+      REQUIRE(raw_graph_of(making, {}, state, graph));
+      CHECK(state.now.elastic.allFinite());
+      CHECK(state.now.elastic.norm() > 0);
+      NextCloth next{state.now.guess, state.now.guess - state.now.x};
+      take_pass(making, next, 10, state);
+    }
+  }
 }
 
 }  // namespace selvedge::test_training_roll

@@ -1,0 +1,167 @@
+#include <catch2/catch.hpp>
+
+#include "learned/steppers/learned_state.hpp"
+#include "learned/steppers/learned_stepper.hpp"
+#include "physics/steppers/carried_stepper.hpp"
+#include "physics/steppers/decorated_stepper.hpp"
+#include "physics/steppers/hybrid_stepper.hpp"
+#include "tests/frame.hpp"
+#include "tests/learned/learned_scenes.hpp"
+
+// Networks whose output is added to the carried guess, behind the stepper interface.
+namespace selvedge::test_student {
+
+namespace {
+
+constexpr double frame_dt = 1.0 / 30;
+
+// A sheet that a plate wears, without gravity: its skinned targets turn and move with the plate, and into it.
+fake::LearnedCase worn_sheet(int frames) {
+  fake::Mesh plate = fake::grid(5, 5, 0.04);
+  plate.x.col(1).array() -= 0.012;
+  fake::LearnedCase worn = fake::learned_case(fake::grid(7, 8), plate, {0, 0, 0}, frames);
+  worn.state.clean = true;
+  for (int frame = 1; frame <= frames; ++frame) {
+    Drive& drive = worn.drives[static_cast<std::size_t>(frame - 1)];
+    const Mat3 turn = Eigen::AngleAxisd(0.04 * frame, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
+    const auto carried = [&](const Points& x) -> Points {
+      return (x * turn.transpose()).rowwise() + 1e-3 * frame * Eigen::RowVector3d(1, 2, 0);
+    };
+    drive.skinned_targets = carried(worn.state.x);
+    drive.skinned_targets.col(1).array() -= 1.5e-3 * frame;
+    drive.acceleration.setZero();
+    drive.obstacles = {carried(plate.x)};
+    drive.pins = drive.skinned_targets.topRows(1);
+  }
+  return worn;
+}
+
+// All weights of the decoder are zero.
+fake::NarrowNetwork silent_student() {
+  fake::NarrowNetwork student = fake::narrow_network("student");
+  for (AffineLayer& layer : student.weights.decoder.layers) {
+    layer.weight.setZero();
+    std::ranges::fill(layer.bias, 0.f);
+  }
+  return student;
+}
+
+std::unique_ptr<Stepper> learned(const Scene& scene, const fake::NarrowNetwork& network) {
+  return make_learned_stepper(scene, network.architecture, network.weights);
+}
+
+std::unique_ptr<Stepper> hybrid(const Scene& scene, const fake::NarrowNetwork& network, HybridMode mode) {
+  HybridParts parts{learned(scene, network), make_recovering_conventional_stepper(scene)};
+  parts.hand_over = [features = network.architecture.features](const State& from, const Drive& drive, State& to) {
+    carry_frame(features, from, drive, to);
+  };
+  HybridOptions options;
+  options.mode = mode;
+  options.longest_stretch = 1;
+  return make_hybrid_stepper(scene, std::move(parts), options);
+}
+
+}  // namespace
+
+TEST_CASE("student: without an output it makes the carried guess", "[learned][student]") {
+  const fake::LearnedCase worn = worn_sheet(4);
+  const auto silent = learned(worn.scene, silent_student()),
+             speaking = learned(worn.scene, fake::narrow_network("student"));
+  State from = worn.state;
+  for (const Drive& drive : worn.drives) {
+    State to, other;
+    REQUIRE(testing::frame(worn.scene, *silent, from, drive, frame_dt, to).status == StepStatus::accepted);
+    CHECK(fake::same_points(to.x, carried_guess(worn.scene, from, drive, frame_dt)));
+    REQUIRE(testing::frame(worn.scene, *speaking, from, drive, frame_dt, other).status == StepStatus::accepted);
+    CHECK_FALSE(fake::same_points(to.x, other.x));
+    CHECK(carried_targets(to));
+    from = to;
+  }
+}
+
+TEST_CASE("student: without an output, and with the response behind it, it is the stepper `carried`, bit for bit",
+          "[learned][student][hybrid]") {
+  const fake::LearnedCase worn = worn_sheet(12);
+  const auto stepper = hybrid(worn.scene, silent_student(), HybridMode::response);
+  const auto carried = make_carried_stepper(worn.scene);
+  State from = worn.state;
+  int proposed = 0, touched = 0;
+  for (const Drive& drive : worn.drives) {
+    State to, baseline;
+    const StepReport report = testing::frame(worn.scene, *stepper, from, drive, frame_dt, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    testing::frame(worn.scene, *carried, from, drive, frame_dt, baseline);
+    if (report.verdict == Verdict::admitted) {
+      ++proposed;
+      touched += report.collision.impulses;
+      CHECK(fake::same_points(to.x, baseline.x));
+      CHECK(fake::same_points(to.v, baseline.v));
+      for (const MemoryBlock& block : baseline.memory) {
+        INFO(block.name);
+        const MemoryRows* kept = find_rows(to.memory, block.name, block.rows.rows());
+        REQUIRE(kept);
+        CHECK((kept->array() == block.rows.array()).all());
+      }
+    }
+    from = to;
+  }
+  CHECK(proposed >= 3);
+  CHECK(touched > 0);
+}
+
+TEST_CASE("student: the frames that turn its output are those of the skinned targets", "[learned][student]") {
+  const fake::LearnedCase worn = worn_sheet(2);
+  State from = worn.state;
+  from.memory = carried_memory({}, worn.drives[0], worn.drives[0].skinned_targets);
+  GraphState state = graph_state(worn.scene, from, worn.drives[1]);
+  set_carried_base(worn.scene, from, worn.drives[1], frame_dt, state);
+  REQUIRE(state.frames.size() == 56);
+  const Mat3 turn = Eigen::AngleAxisd(0.04, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
+  CHECK((state.frames[10] - turn).norm() < 1e-9);
+  from.memory.clear();  // nothing is known of the last frame
+  set_carried_base(worn.scene, from, worn.drives[1], frame_dt, state);
+  CHECK(state.frames.empty());
+  Drive bare = worn.drives[1];
+  bare.skinned_targets.resize(0, 3);
+  bare.acceleration = {0, -9.81, 0};
+  set_carried_base(worn.scene, from, bare, frame_dt, state);
+  CHECK(state.frames.empty());
+  CHECK(state.guess(20, 1) == Approx(from.x(20, 1) - 9.81 * frame_dt * frame_dt));
+}
+
+TEST_CASE("student: random weights end clean behind the response and behind a rough solve",
+          "[learned][student][hybrid]") {
+  const fake::LearnedCase worn = worn_sheet(7);
+  for (const HybridMode mode : {HybridMode::response, HybridMode::rough})
+    for (const double reach : {1e-4, 1e-2, 1e3}) {
+      INFO("mode " << static_cast<int>(mode) << ", reach " << reach);
+      fake::NarrowNetwork student = fake::narrow_network("student", reach);
+      const auto stepper = hybrid(worn.scene, student, mode);
+      State from = worn.state;
+      for (const Drive& drive : worn.drives) {
+        State to;
+        const StepReport report = testing::frame(worn.scene, *stepper, from, drive, frame_dt, to);
+        REQUIRE(report.status == StepStatus::accepted);
+        CHECK(report.collision.passed_through == 0);
+        CHECK(to.clean);
+        from = to;
+      }
+    }
+}
+
+TEST_CASE("student: it never settles, and knows gravity and wind", "[learned][student]") {
+  const fake::LearnedCase worn = worn_sheet(1);
+  const fake::NarrowNetwork student = fake::narrow_network("student");
+  CHECK_FALSE(may_settle(student.architecture));
+  const StepperTraits traits = learned_traits(student.architecture);
+  CHECK(std::ranges::find(traits.ignores, "wind") == traits.ignores.end());
+  for (const PlanLine& line : learned_plan_lines(worn.scene, student.architecture, {.settle = true}))
+    if (line.feature == "settling pass") CHECK_FALSE(line.in);
+  State settled, plain;
+  const auto one = make_learned_stepper(worn.scene, student.architecture, student.weights, {.settle = true});
+  testing::frame(worn.scene, *one, worn.state, worn.drives[0], frame_dt, settled);
+  testing::frame(worn.scene, *learned(worn.scene, student), worn.state, worn.drives[0], frame_dt, plain);
+  CHECK(fake::same_state(settled, plain));
+}
+
+}  // namespace selvedge::test_student
