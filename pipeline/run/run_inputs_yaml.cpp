@@ -71,7 +71,7 @@ std::vector<fs::path> named_files(const std::string& text, const fs::path& folde
   return files;
 }
 
-// Adds a tree to a hash: a value that names files stands for their bytes, and folders for nothing.
+// Adds a tree to a hash: a value that names files stands for their bytes.
 std::uint64_t hash_of_tree(const YAML::Node& node, const fs::path& folder, std::uint64_t hash) {
   if (node.IsScalar()) {
     const std::vector<InputFile> files = hashed_files({node.Scalar()}, folder);

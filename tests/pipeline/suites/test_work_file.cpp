@@ -118,7 +118,7 @@ TEST_CASE("cells: files that a scene names are part of its key, wherever they li
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
   const auto key_with = [](const Folder& in, const std::string& mesh) {
     const fs::path file = fake::write(in, "sheet.obj", mesh);
-    fake::write(in, "scene.yaml", "cloths: [{mesh: {file: " + file.string() + "}}]\nrun: {frames: 1}\n");
+    fake::write(in, "scene.yaml", "cloths: [{mesh: " + file.string() + "}]\nrun: {frames: 1}\n");
     return read_cells(fake::write(in, "shots.yaml", "cells: shots\nshots: [scene.yaml]\n"));
   };
   const CellList list = key_with(folder, triangle);
