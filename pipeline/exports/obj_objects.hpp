@@ -13,8 +13,7 @@ namespace selvedge {
 std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<const PointsF> x,
                          const std::string& material_file);
 
-// The names of surfaces' materials are made different in one file; that file, which objects_text names. Empty: no
-// surface has any.
+// The .mtl file of these surfaces, which objects_text names. Empty: they have no materials.
 std::string objects_materials(std::span<const AnimatedSurface> surfaces);
 
 }  // namespace selvedge
