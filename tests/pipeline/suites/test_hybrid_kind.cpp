@@ -77,8 +77,22 @@ TEST_CASE("hybrid kind: with spoiled weights every frame is finite and clean", "
     }
 }
 
+TEST_CASE("hybrid kind: behind the response and behind a rough solve, too", "[hybrid][student]") {
+  for (const std::string mode : {"response", "rough"})
+    for (const std::string fault : {"", "nan", "random", "zero", "huge"}) {
+      INFO(mode << " " << fault);
+      const Folder folder("hybrid_student");
+      const Course course = follow(scene_of(folder, "student", fault, {"run.hybrid.mode=" + mode}), 10);
+      const auto of = [&](Verdict verdict) { return std::ranges::count(course.verdicts, verdict); };
+      CHECK(course.verdicts.front() == Verdict::no_history);
+      if (fault == "nan") CHECK(of(Verdict::not_made) >= 2);
+      if (fault == "zero") CHECK(of(Verdict::admitted) + of(Verdict::refined) >= 2);
+      if (fault == "huge") CHECK(of(Verdict::moved_too_far) >= 2);
+    }
+}
+
 TEST_CASE("hybrid kind: every mode, on one thread and on two, gives the same bits", "[hybrid]") {
-  for (const char* mode : {"fallback", "corrected", "refined", "gated", "after_k"}) {
+  for (const char* mode : {"fallback", "corrected", "refined", "gated", "after_k", "response", "rough"}) {
     INFO(mode);
     const Folder folder("hybrid_threads");
     const Setup setup = scene_of(folder, "contourcraft", "", {std::string("run.hybrid.mode=") + mode});
