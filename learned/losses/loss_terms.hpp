@@ -23,7 +23,7 @@ struct LossInputs {
   const std::vector<char>* body_left_out = nullptr;  // one flag per face that cloth ignores; null: none
   const Points* acceleration = nullptr;              // of all forces but contact, V x 3 [m/s2]; null: of gravity alone
   std::span<const ClothPair> repulsion;              // vertex-face pairs of the cloth that repel
-  const Points* target = nullptr;  // positions of the next frame that the solver makes [m]; null: none
+  const Points* target = nullptr;       // positions of the next frame that the solver makes [m]; null: none
   FramePotential* potential = nullptr;  // the solver's potential of the next frame; null: none
   bool contours = true;  // false: the contour loss counts nothing (published: in a first frame, and if none attracts)
   bool is_initial = false;     // the cloth falls to rest: inertia takes relaxation_dt

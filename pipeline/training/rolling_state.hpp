@@ -17,13 +17,13 @@ namespace selvedge {
 struct RollingState {
   Roll roll;
   int frame = 0, pass = 0;
-  GraphState now;                    // the start of the frame, with guess and number of the next pass
-  bool over = true;                  // the roll-out has ended
-  std::unique_ptr<Safeguard> guard;  // filters the motion of the roll-out; null: none
-  std::unique_ptr<Stepper> behind;   // runs behind the network; null: nothing does
+  GraphState now;                          // the start of the frame, with guess and number of the next pass
+  bool over = true;                        // the roll-out has ended
+  std::unique_ptr<Safeguard> guard;        // filters the motion of the roll-out; null: none
+  std::unique_ptr<Stepper> behind;         // runs behind the network; null: nothing does
   std::shared_ptr<RollSolver> solver;      // of a teacher; null: none was asked yet in this roll-out
   std::shared_future<TeacherStep> taught;  // a teacher's frame from here; invalid: none was asked for
-  std::vector<char> body_left_out;   // faces of the body that meet others now or next; empty: none
+  std::vector<char> body_left_out;         // faces of the body that meet others now or next; empty: none
   // Memory that is used again:
   GraphSearch search;
   LossSearch losses;
