@@ -13,7 +13,7 @@ namespace selvedge {
 // A cell is a piece of a long work that depends on no other piece: a row of a suite, a scene of a comparison, a path of
 // a data set, a shot. Cells may be done in any order, on any machine and by any number of processes; what they leave is
 // gathered into the tables of the whole.
-struct Cell {
+struct WorkCell {
   std::string name;                               // one of the list's
   std::vector<std::filesystem::path> needs = {};  // files that it reads, beside the program's own `configs`
   double seconds = 0;                             // rough cost on one core [s]
@@ -51,7 +51,7 @@ struct CellList {
   std::filesystem::path file;      // that the list was read from; empty: none
   std::string program;             // hash of this program (program_key)
   std::vector<std::string> names;  // each one once, in the order in which one process does them best
-  std::function<Cell(std::size_t)> describe;
+  std::function<WorkCell(std::size_t)> describe;
   // Everything that the result depends on, but the program.
   std::function<std::string(std::size_t)> key;
   // Does a cell and leaves its files in the folder, which is empty. Absent: stopped.

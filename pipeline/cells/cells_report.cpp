@@ -21,21 +21,21 @@ std::string named_cells(const std::vector<std::string>& names, const std::string
 
 }  // namespace
 
-std::string cells_table(const std::vector<Cell>& cells) {
+std::string cells_table(const std::vector<WorkCell>& cells) {
   std::string text = fmt::format("{:<40} {:>8} {:>6}\n", "cell", "s", "files");
   double sum = 0;
-  for (const Cell& cell : cells) {
+  for (const WorkCell& cell : cells) {
     text += fmt::format("{:<40} {:>8.0f} {:>6}\n", cell.name, cell.seconds, cell.needs.size());
     sum += cell.seconds;
   }
   return text + fmt::format("{} cells, {:.1f} h of one core, roughly\n", cells.size(), sum / 3600);
 }
 
-std::string cells_json(const CellList& list, const std::vector<Cell>& cells) {
+std::string cells_json(const CellList& list, const std::vector<WorkCell>& cells) {
   return json_text({{"file", list.file.string()},
                     {"kind", list.kind},
                     {"program", list.program},
-                    {"cells", json_list(cells, [](const Cell& cell) {
+                    {"cells", json_list(cells, [](const WorkCell& cell) {
                        const Json needs = json_list(cell.needs, [](const auto& path) { return Json(path.string()); });
                        return Json{{"name", cell.name}, {"needs", needs}, {"cost", cell.seconds}};
                      })}});

@@ -47,8 +47,8 @@ GatheredCells gather_cells(const CellList&, const std::filesystem::path& out);
 // earlier program, is removed.
 void show_result(const std::filesystem::path& result, const std::filesystem::path& shown);
 
-std::string cells_table(const std::vector<Cell>&);  // for people
-std::string cells_json(const CellList&, const std::vector<Cell>&);
+std::string cells_table(const std::vector<WorkCell>&);  // for people
+std::string cells_json(const CellList&, const std::vector<WorkCell>&);
 std::string done_cells_json(const std::vector<DoneCell>&);
 std::string gathered_text(const GatheredCells&);
 std::string gathered_json(const CellList&, const GatheredCells&);

@@ -79,8 +79,8 @@ CellList shot_cells(const ShotRequest& request) {
   };
   list.describe = [request, setup_of](std::size_t k) {
     const Setup& setup = setup_of(k);
-    return Cell{request.shots[k].name, needs_of(setup),
-                rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
+    return WorkCell{request.shots[k].name, needs_of(setup),
+                    rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
   };
   list.key = [request, setup_of](std::size_t k) {
     return inputs_key(setup_of(k)) + (request.pages ? "" : " without page");

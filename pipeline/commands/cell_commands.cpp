@@ -33,7 +33,7 @@ int list_cells(const CellsArguments& arguments, bool json) {
     for (const std::string& name : list.names) std::cout << name << "\n";
     return 0;
   }
-  std::vector<Cell> cells;
+  std::vector<WorkCell> cells;
   for (std::size_t k = 0; k < list.names.size(); ++k) cells.push_back(list.describe(k));
   std::cout << (json ? cells_json(list, cells) : cells_table(cells));
   return 0;

@@ -279,7 +279,7 @@ CellList list_of(const std::shared_ptr<CompareWork>& work) {
   list.keeps_parts = true;
   list.describe = [work](std::size_t k) {
     const SceneWork& scene = scene_of(*work, k);
-    return Cell{work->names[k], needs_of(work->comparison, scene), rough_seconds_of(work->comparison, scene)};
+    return WorkCell{work->names[k], needs_of(work->comparison, scene), rough_seconds_of(work->comparison, scene)};
   };
   list.key = [work](std::size_t k) { return key_of(work->comparison, scene_of(*work, k)); };
   list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {

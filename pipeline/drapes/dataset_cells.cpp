@@ -119,7 +119,7 @@ CellList list_of(const std::shared_ptr<DatasetWork>& work) {
     const DrapeOptions& options = work->options;
     constexpr int vertices = 1000;  // of most garments at most edge lengths
     const int frames = options.poses * (options.move_frames + options.settle_frames);
-    return Cell{names[k], {work->config}, rough_seconds(vertices, frames)};
+    return WorkCell{names[k], {work->config}, rough_seconds(vertices, frames)};
   };
   list.key = [work](std::size_t) { return fmt::format("{:016x}", hash_of(drape_yaml(work->options))); };
   list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {

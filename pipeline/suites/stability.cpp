@@ -201,7 +201,7 @@ CellList stability_cells(const StabilityRequest& request) {
     const Setup& setup = setup_of(*work, k);
     std::vector<std::filesystem::path> needs = needs_of(setup);
     needs.push_back(work->request.suite);
-    return Cell{names[k], needs, rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
+    return WorkCell{names[k], needs, rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
   };
   list.key = [work](std::size_t k) {
     const StabilityLimits& limits = work->limits;

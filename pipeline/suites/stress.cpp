@@ -207,7 +207,7 @@ CellList stress_cells(const StressRequest& request) {
   number_equal_names(list.names);
   list.describe = [work, names = list.names](std::size_t k) {
     const Setup& setup = work->setup_of(k);
-    return Cell{names[k], needs_of(setup), rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
+    return WorkCell{names[k], needs_of(setup), rough_seconds(setup.scene.surface.vertex_count, setup.run.frames)};
   };
   list.key = [work](std::size_t k) {
     const StressRequest& asked = work->request;

@@ -245,7 +245,7 @@ CellList list_of(const std::shared_ptr<WardrobeWork>& work) {
     const WardrobeCell& cell = work->cells[k];
     constexpr double frame = 0.11;  // mean of docs/garments/wardrobe.csv [s]
     const int frames = work->request.most_frames > 0 ? work->request.most_frames : cell.clip.frames;
-    return Cell{cell.name(), work->files, frame * (30 + frames)};
+    return WorkCell{cell.name(), work->files, frame * (30 + frames)};
   };
   list.key = [work](std::size_t) { return work->key; };
   list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {

@@ -207,7 +207,7 @@ CellList read_cells(const std::filesystem::path& file) {
   CellList list = read_by_keys(file);
   list.file = file;
   list.describe = [describe = list.describe, file](std::size_t k) {
-    Cell cell = describe(k);
+    WorkCell cell = describe(k);
     if (std::ranges::find(cell.needs, file) == cell.needs.end()) cell.needs.insert(cell.needs.begin(), file);
     return cell;
   };

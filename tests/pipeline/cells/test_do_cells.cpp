@@ -27,7 +27,7 @@ CellList three(const std::string& key = "settings") {
   list.file = "numbers.yaml";
   list.program = "0123";
   list.names = {"a", "b", "c"};
-  list.describe = [names = list.names](std::size_t k) { return Cell{names[k], {"numbers.yaml"}, 2}; };
+  list.describe = [names = list.names](std::size_t k) { return WorkCell{names[k], {"numbers.yaml"}, 2}; };
   list.key = [key](std::size_t) { return key; };
   list.run = [](std::size_t k, const fs::path& folder, const CellWatch& watch) -> std::optional<CellResult> {
     write_file(folder / "number.txt", std::to_string(k));

@@ -60,7 +60,7 @@ TEST_CASE("cells: shots are simulated with their overrides, each as it would be 
   const CellList list = read_cells(file);
   CHECK(list.kind == "shots");
   CHECK(list.names == std::vector<std::string>{"hanging", "denim"});
-  const Cell cell = list.describe(1);
+  const WorkCell cell = list.describe(1);
   CHECK(cell.name == "denim");
   CHECK(cell.needs.at(0) == file);
   CHECK(fs::equivalent(cell.needs.at(1), folder.path / "hanging.yaml"));
