@@ -38,7 +38,7 @@ class TrajectoryReader {
   const TrajectoryInfo& info() const;
   std::vector<Look> looks() const;  // of each cloth, empty ones where the file has none; read when asked for
   int frame_count() const;          // full frames
-  bool closed() const;      // false: still being written, or its writer was killed
+  bool closed() const;              // false: still being written, or its writer was killed
   Frame frame(int index) const;
 
  private:

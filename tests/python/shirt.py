@@ -1,7 +1,7 @@
 """A T-shirt with a file of its own, dressed and simulated, for the tests of exports.
 
-The file has texture coordinates, normals, two materials, two groups, and a seam along the middle whose vertices are there twice.
-Its vertices are shuffled, so that any other order would be seen.
+The file has texture coordinates, normals, two materials, two groups, and a seam along the middle whose vertices are
+there twice. Its vertices are shuffled, so that any other order would be seen.
 """
 
 import dataclasses
@@ -38,7 +38,8 @@ def run(program, *arguments):
 
 def made_mesh(program, folder):
     """Vertices and triangles of a shirt that the program makes."""
-    (folder / "made.yaml").write_text("cloths: [{name: shirt, garment: {cut: tshirt, edge: 6 cm}}]\n" + BODY + "run: {frames: 0}\n")
+    cloth = "cloths: [{name: shirt, garment: {cut: tshirt, edge: 5 cm}}]\n"
+    (folder / "made.yaml").write_text(cloth + BODY + "run: {frames: 1}\n")
     run(program, "simulate", folder / "made.yaml", "--out", folder / "made", "--no-view")
     run(program, "export", folder / "made", "--format", "obj", "--out", folder / "made")
     file = folder / "made" / "cloth_00000.obj"
@@ -73,7 +74,9 @@ def normals_of(x, faces):
 
 
 def write_obj(folder, x, uv, normals, faces, left):
-    (folder / "shirt.mtl").write_text("newmtl red cotton\nKd 0.5 0.1 0.1\nnewmtl blue\nKd 0.1 0.1 0.6\nmap_Kd cloth.png\n")
+    (folder / "shirt.mtl").write_text(
+        "newmtl red cotton\nKd 0.5 0.1 0.1\nnewmtl blue\nKd 0.1 0.1 0.6\nmap_Kd cloth.png\n"
+    )
     lines = ["mtllib shirt.mtl", "o shirt"]
     lines += [f"v {a:.9f} {b:.9f} {c:.9f}" for a, b, c in x] + [f"vt {u:.6f} {v:.6f}" for u, v in uv]
     lines += [f"vn {a:.4f} {b:.4f} {c:.4f}" for a, b, c in normals]

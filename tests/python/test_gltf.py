@@ -20,10 +20,9 @@ def rows(file, number):
     kind, width = np.dtype(TYPES[accessor.componentType]), WIDTHS[accessor.type]
     stride = view.byteStride or kind.itemsize * width
     begin = (view.byteOffset or 0) + (accessor.byteOffset or 0)
-    blob = np.frombuffer(file.binary_blob(), np.uint8)
-    return np.array(
-        [np.frombuffer(blob[begin + i * stride :][: kind.itemsize * width].tobytes(), kind) for i in range(accessor.count)]
-    ).astype(float)
+    blob = file.binary_blob()
+    found = [np.frombuffer(blob, kind, width, begin + i * stride) for i in range(accessor.count)]
+    return np.array(found).astype(float)
 
 
 @pytest.mark.skipif(not PROGRAM, reason="SELVEDGE_PROGRAM is not set")

@@ -67,14 +67,16 @@ def test_a_shirt_comes_out_as_its_file_had_it(tmp_path):
 
 
 def check_materials(stage, mesh, shirt):
-    subsets = {subset.GetPrim().GetName(): subset for subset in UsdGeom.Subset.GetAllGeomSubsets(UsdGeom.Imageable(mesh))}
+    found = UsdGeom.Subset.GetAllGeomSubsets(UsdGeom.Imageable(mesh))
+    subsets = {subset.GetPrim().GetName(): subset for subset in found}
     assert set(subsets) == {"red_cotton", "blue", "left", "right"}
     sides = np.split(np.arange(len(shirt.faces)), [shirt.left])
     for (material, part), faces in zip((("red_cotton", "left"), ("blue", "right")), sides):
         assert (np.array(subsets[material].GetIndicesAttr().Get()) == faces).all()
         assert (np.array(subsets[part].GetIndicesAttr().Get()) == faces).all()
     bound = {
-        name: UsdShade.MaterialBindingAPI(subsets[name].GetPrim()).ComputeBoundMaterial()[0] for name in ("red_cotton", "blue")
+        name: UsdShade.MaterialBindingAPI(subsets[name].GetPrim()).ComputeBoundMaterial()[0]
+        for name in ("red_cotton", "blue")
     }
     assert bound["red_cotton"].GetPrim().GetCustomDataByKey("name") == "red cotton"
     colour = bound["red_cotton"].ComputeSurfaceSource()[0].GetInput("diffuseColor")

@@ -154,9 +154,9 @@ def read_trajectory(file: Path) -> Trajectory:
     dicts, one a frame, by the names of docs/files.md."""
 def read_surfaces(run: Path, obstacles: bool = ...) -> list[AnimatedSurface]:
     """The cloths of a run (its run.h5 or folder), each by itself, and its obstacles, as exports have them: by the
-    vertices and faces of the cloth's own file. A list of dicts: name; cloth, whether it is one; fps; counts, the corners
-    of each face; corners, their vertices, one face after another; uv, k x 2; corner_uv, the row of uv of each corner,
-    -1 for none, or empty; x, a list of n x 3 [m], one a frame, or one where the surface never moves."""
+    vertices and faces of the cloth's own file. A list of dicts: name; cloth, whether it is one; fps; counts, the
+    corners of each face; corners, their vertices, one face after another; uv, k x 2; corner_uv, the row of uv of each
+    corner, -1 for none, or empty; x, a list of n x 3 [m], one a frame, or one where the surface never moves."""
 def read_cache(file: Path) -> Cache:
     """A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; at, when
     each sample is, in frames of that rate; x, a list of n x 3 in the file's unit, one a sample."""

@@ -93,10 +93,10 @@ def write_alembic(
 
 
 def export_alembic(run: str | os.PathLike[str], file: str | os.PathLike[str], *, obstacles: bool = True) -> list[str]:
-    """Writes a run (its run.h5, or the folder) as one Alembic file: a mesh a cloth, with the vertices, faces and texture
-    coordinates of the cloth's own file where it had one, and with obstacles a mesh an obstacle. What never moves has one
-    sample. Returns the meshes' names: those of the run, with / and repeated ones replaced. The whole run is held in
-    memory. Raises Error for a run without a frame and positions that are not finite."""
+    """Writes a run (its run.h5, or the folder) as one Alembic file: a mesh a cloth, with the vertices, faces and
+    texture coordinates of the cloth's own file where it had one, and with obstacles a mesh an obstacle. What never
+    moves has one sample. Returns the meshes' names: those of the run, with / and repeated ones replaced. The whole run
+    is held in memory. Raises Error for a run without a frame and positions that are not finite."""
     meshes: list[_Written] = []
     surfaces = read_surfaces(run, obstacles)
     for surface in surfaces:
