@@ -130,10 +130,10 @@ void check_keys_used(const Config& section) {
   const char* kind = section["file"].given ? "file" : section["cut"].given ? "cut" : "outfit";
   const auto refuse = [&](const char* key, const char* of, bool differs) {
     if (differs && std::string_view(kind) != of)
-      section[key].fail(fmt::format("is given beside `{}`, and is for a `{}`", kind, of), "leave it out");
+      section[key].fail(fmt::format("is given beside `{}`, and goes with `{}` alone", kind, of), "leave it out");
   };
   if (section["edge"].given && section["file"].given)
-    section["edge"].fail("is given beside `file`, and is for a `cut` or an `outfit`", "leave it out");
+    section["edge"].fail("is given beside `file`, and goes with `cut` or `outfit`", "leave it out");
   refuse("over", "cut", section["over"].given && !section["over"].words.empty());
   refuse("form", "outfit", section["form"].text() != "small");
   refuse("layers", "outfit", section["layers"].text() != "over");

@@ -42,7 +42,7 @@ void add(CcdCount& count, const CcdQuery& query, bool contact) {
 
 double percent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0; }
 
-std::string counted(const CcdCount& c) {
+std::string count_text(const CcdCount& c) {
   return fmt::format("{} queries, {} positives: {} false negatives, {} false positives ({:.2f} % of the negatives)",
                      c.queries, c.positives, c.false_negatives, c.false_positives,
                      percent(c.false_positives, c.negatives()));
@@ -99,8 +99,8 @@ std::string ccd_json(const CcdReport& r) {
 
 std::string ccd_text(const CcdReport& r) {
   LabelLines add{22};
-  add("all", counted(r.all));
-  add("degenerate", counted(r.degenerate));
+  add("all", count_text(r.all));
+  add("degenerate", count_text(r.degenerate));
   add("time", fmt::format("{:.2f} us a query, {:.1f} us at worst ({})", r.mean_us, r.max_us, r.slowest));
   for (const std::string& name : r.wrong) add("wrong", name);
   return add.text;
