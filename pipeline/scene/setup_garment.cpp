@@ -11,6 +11,7 @@
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/worn_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -92,19 +93,23 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
 bool is_mesh(const std::filesystem::path& name) { return name.extension() == ".obj" || name.extension() == ".ply"; }
 
 // A mesh that lies where the body wears it in its zero pose and the shape that its section gives.
+Garment dressed_as_worn(const Config& section, const std::string& name, const Mesh& mesh, const Performance& who) {
+  if (worn_part(mesh.x, shaped(who.body.skin, who.given_shape)).places.empty())
+    section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
+                         "give its `unit`, or make the garment with `selvedge dress`, which takes poses");
+  const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
+  Garment garment = dressed(mesh, who.body, how).garment;
+  garment.name = name;
+  return garment;
+}
+
 Garment read_dressed(const Config& section, const std::filesystem::path& file, const Performance& who,
                      std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
   mesh.x *= read_unit(section["unit"]);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  if (worn_part(mesh.x, shaped(who.body.skin, who.given_shape)).places.empty())
-    section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
-                         "give its `unit`, or make the garment with `selvedge dress`, which takes poses");
-  const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
-  Garment garment = dressed(mesh, who.body, how).garment;
-  garment.name = file.stem().string();
-  return garment;
+  return dressed_as_worn(section, file.stem().string(), mesh, who);
 }
 
 Garment read_file(const Config& section, const std::filesystem::path& folder, const Performance& who,
@@ -122,6 +127,16 @@ Garment read_file(const Config& section, const std::filesystem::path& folder, co
     warnings.push_back(fmt::format("garment `{}` was made for the body `{}`, and `{}` is `{}`", garment.name,
                                    garment.made_for, who.name, who.body.name));
   return garment;
+}
+
+std::shared_ptr<const Wearing> worn_by(const std::shared_ptr<const Performance>& who, Garment garment) {
+  SkinWeights skin;
+  Footing footing;
+  if (who->soft_tissue) {
+    skin = shares_of_body(garment.skin.rest, who->body, skin_width);
+    footing = footing_of(garment.skin.rest, {who->surface, who->body.skin.rest});
+  }
+  return std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)});
 }
 
 }  // namespace
@@ -145,16 +160,20 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
   std::vector<std::shared_ptr<const Wearing>> worn;
-  for (Garment& garment : read_garments(section, folder, *who, warnings)) {
-    SkinWeights skin;
-    Footing footing;
-    if (who->soft_tissue) {
-      skin = shares_of_body(garment.skin.rest, who->body, skin_width);
-      footing = footing_of(garment.skin.rest, {who->surface, who->body.skin.rest});
-    }
-    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)}));
-  }
+  for (Garment& garment : read_garments(section, folder, *who, warnings))
+    worn.push_back(worn_by(who, std::move(garment)));
   return worn;
+}
+
+std::shared_ptr<const Wearing> wear_mesh(const Config& cloth, const std::string& name, const Mesh& mesh,
+                                         const std::optional<std::vector<int>>& pins, const Performances& bodies) {
+  const Config& section = cloth["garment"];
+  check_placed_by_body(cloth);
+  const auto who = wearer(section, bodies);
+  Garment garment = dressed_as_worn(section, name, mesh, *who);
+  if (pins) garment.pins = *pins;
+  if (!section["pins"].flag()) garment.pins.clear();
+  return worn_by(who, std::move(garment));
 }
 
 Mesh rest_mesh(const Wearing& wearing) {
