@@ -1,6 +1,7 @@
 #include "pipeline/bodies/joint_regressor.hpp"
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/factorisations.hpp"
 
 namespace selvedge {
 namespace {
@@ -14,6 +15,15 @@ Eigen::VectorXd bends_at(const Eigen::MatrixXd& weights, const std::vector<int>&
   for (int other = 0; other < weights.cols(); ++other)
     if (other == parents[joint] || (parents[joint] < 0 && parents[other] == joint)) others += weights.col(other);
   return weights.col(joint).cwiseProduct(others);
+}
+
+// Weights of any sign that sum to 1, with the weighted mean of the vertices at the point: those with the least norm.
+// The vertices must not lie in one plane.
+Eigen::VectorXd exact_mean(const Points& x, const Vec3& point) {
+  const Vec3 mean = x.colwise().mean().transpose();
+  const Points off = x.rowwise() - mean.transpose();
+  const Vec3 pull = solve_symmetric(off.transpose() * off, point - mean);
+  return (off * pull).array() + 1.0 / static_cast<double>(x.rows());
 }
 
 }  // namespace
@@ -64,6 +74,18 @@ SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::option
         entries.emplace_back(j, vertices[k], share[static_cast<Eigen::Index>(k)]);
   }
   return from_entries(std::ssize(body.joints), rest.rows(), entries);
+}
+
+SkinWeights exact_regressor(const Points& x, const Points& joints, const std::string& where) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const double size = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  for (int j = 0; j < joints.rows(); ++j) {
+    const Eigen::VectorXd weights = exact_mean(x, row(joints, j));
+    if (!weights.allFinite() || !((x.transpose() * weights - row(joints, j)).norm() <= 1e-6 * size))
+      throw Error("lies in one plane", where, "give the surface of a body");
+    for (int v = 0; v < weights.size(); ++v) entries.emplace_back(j, v, weights[v]);
+  }
+  return from_entries(joints.rows(), x.rows(), entries);
 }
 
 }  // namespace selvedge

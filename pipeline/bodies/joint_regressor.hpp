@@ -24,4 +24,8 @@ struct RegressorFiles {
 // vertices that bend there.
 SkinWeights joint_regressor(const BodyModel&, const std::vector<std::optional<Vec3>>& places, const RegressorFiles&);
 
+// The regressor of a body without shapes, which needs the joints' places alone: weights of any sign, with the least
+// norm. Throws Error, naming `where`, for vertices that lie in one plane.
+SkinWeights exact_regressor(const Points& x, const Points& joints, const std::string& where);
+
 }  // namespace selvedge

@@ -24,20 +24,6 @@ std::string name_of_run(const TrainArguments& arguments) {
                                              : read_training(arguments.config, arguments.overrides).name;
 }
 
-// Text and JSON of what was trained, and whether it has ended.
-struct TrainedRun {
-  std::string text, json;
-  bool finished = false;
-};
-TrainedRun trained(const TrainRequest& request) {
-  if (is_drape_training(request.config)) {
-    const DrapeTrainSummary summary = train_drapes(request);
-    return {drape_train_text(summary), drape_train_json(summary), summary.finished};
-  }
-  const TrainSummary summary = train(request);
-  return {train_text(summary), train_json(summary), summary.finished};
-}
-
 }  // namespace
 
 RunCommand dataset_command(CLI::App& command) {
@@ -75,7 +61,7 @@ RunCommand train_command(CLI::App& command) {
     if (mark.other()) std::cerr << "warning: another training runs: " << *mark.other() << "\n";
     TrainRequest request{arguments->config, arguments->overrides, arguments->out,
                          arguments->resume, &std::cerr,           InterruptWatch::interrupted};
-    const TrainedRun made = trained(request);
+    const TrainedRun made = train_as_asked(request);
     const char* more = made.finished ? "" : "go on with --resume and the same arguments\n";
     return end_command(json, made.text + more, made.json, made.finished);
   };

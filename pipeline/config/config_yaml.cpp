@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/config_text.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -193,6 +194,16 @@ Config read_values(const Section& section, const std::vector<GivenValue>& values
     origin.overrides.push_back({given.key, given.where});
   }
   return checked_section(root, section, "", origin.file, origin);
+}
+
+Config read_section(const std::string& yaml, const Section& section, const std::string& where) {
+  Origin origin{where, {}};
+  const YAML::Node root = loaded(yaml, where);
+  if (!root.IsMap()) throw Error("is no dictionary", where, "allowed keys: " + joined(key_names(section)));
+  int left = most_values;
+  count_values(root, where, 0, left);
+  for (const auto& pair : root) origin.overrides.push_back({pair.first.Scalar(), where});
+  return checked_section(root, section, "", where, origin);
 }
 
 std::string quoted_yaml(const std::string& text) {

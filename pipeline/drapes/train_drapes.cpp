@@ -134,4 +134,13 @@ std::string drape_train_json(const DrapeTrainSummary& s) {
   return json_text({{"folder", s.folder.string()}, {"finished", s.finished}, {"seconds", s.seconds}, {"rows", rows}});
 }
 
+TrainedRun train_as_asked(const TrainRequest& request) {
+  if (is_drape_training(request.config)) {
+    const DrapeTrainSummary summary = train_drapes(request);
+    return {drape_train_text(summary), drape_train_json(summary), summary.finished};
+  }
+  const TrainSummary summary = train(request);
+  return {train_text(summary), train_json(summary), summary.finished};
+}
+
 }  // namespace selvedge

@@ -22,4 +22,12 @@ DrapeTrainSummary train_drapes(const TrainRequest&);
 std::string drape_train_text(const DrapeTrainSummary&);
 std::string drape_train_json(const DrapeTrainSummary&);
 
+// Trains what the file asks for: a network of the stepper `learned` (train), or one of drapes. Texts are for people and
+// as one JSON object.
+struct TrainedRun {
+  std::string text, json;
+  bool finished = false;
+};
+TrainedRun train_as_asked(const TrainRequest&);
+
 }  // namespace selvedge

@@ -8,6 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/factorisations.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/bodies/joint_regressor.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
@@ -99,29 +100,6 @@ std::vector<std::string> joint_names(const std::vector<std::string>& names, cons
   for (std::size_t j = 0; j < all.size(); ++j)
     while (!is_smpl[j] && std::ranges::count(all, all[j]) > 1) all[j] += "_";
   return all;
-}
-
-// Weights of any sign that sum to 1, with the weighted mean of the vertices at the point: those with the least norm.
-// The vertices must not lie in one plane.
-Eigen::VectorXd exact_mean(const Points& x, const Vec3& point) {
-  const Vec3 mean = x.colwise().mean().transpose();
-  const Points off = x.rowwise() - mean.transpose();
-  const Vec3 pull = solve_symmetric(off.transpose() * off, point - mean);
-  return (off * pull).array() + 1.0 / static_cast<double>(x.rows());
-}
-
-// A body without shapes needs only the joints' places, so that any vertices not in one plane will do.
-SkinWeights exact_regressor(const BodyModel& body, const Points& joints, const std::string& file) {
-  std::vector<Eigen::Triplet<double>> entries;
-  const Points& x = body.skin.rest;
-  const double size = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
-  for (int j = 0; j < joints.rows(); ++j) {
-    const Eigen::VectorXd weights = exact_mean(x, row(joints, j));
-    if (!weights.allFinite() || !((x.transpose() * weights - row(joints, j)).norm() <= 1e-6 * size))
-      throw Error("lies in one plane", file + ": meshes", "give the surface of a body");
-    for (int v = 0; v < weights.size(); ++v) entries.emplace_back(j, v, weights[v]);
-  }
-  return from_entries(joints.rows(), x.rows(), entries);
 }
 
 // The three or four numbers of a track at a time.
@@ -245,7 +223,7 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
       weights.emplace_back(v, place[w.col()], w.value());
   body.skin.weights = from_entries(scene.weights.rows(), joints.rows(), weights);
   body.skin.shape_directions.resize(3 * body.skin.rest.rows(), 0);
-  body.regressor = exact_regressor(body, joints, rig.file);
+  body.regressor = exact_regressor(body.skin.rest, joints, rig.file + ": meshes");
   check_body(body, rig.file);
   return rig;
 }

@@ -25,6 +25,7 @@
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
+#include "pipeline/obstacles/perform_clip.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 
@@ -191,15 +192,30 @@ Points with_soft_tissue(const GiveWay& tissue, const Points& skinned, PosedBodie
 
 }  // namespace
 
-Performance read_figure(const Config& section, const std::filesystem::path& folder) {
+Performance figure_of(BodyModel body, const std::string& what) {
   Performance who;
-  who.body = read_model(section["model"], folder);
-  turn_outward(section["model"].text(), who.body, who.warnings);
-  warn_of_axis(section["model"].text(), who.body, who.warnings);
+  who.body = std::move(body);
+  turn_outward(what, who.body, who.warnings);
+  warn_of_axis(what, who.body, who.warnings);
   who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
   if (std::optional<WeldedSurface> welded = welded_surface(who.surface, same_places(who.body.skin)))
     std::tie(who.surface, who.joined) = std::pair(std::move(welded->surface), std::move(welded->joined));
   return who;
+}
+
+Performance read_figure(const Config& section, const std::filesystem::path& folder) {
+  return figure_of(read_model(section["model"], folder), section["model"].text());
+}
+
+void perform_clip(Clip made, const Config& section, const Config& what, Performance& who) {
+  who.clip = std::move(made);
+  for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
+    if (const BodyPose& pose = who.clip.poses[f];
+        !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= largest_length))
+      what.fail(fmt::format("moves the body absurdly far in frame {}", f),
+                fmt::format("repair it where it was made; up to {:g} m are allowed", largest_length));
+  who.fits_room = section["room"].numbers.empty();
+  leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
 }
 
 void perform(const Config& section, const std::filesystem::path& folder, Performance& who) {
@@ -221,14 +237,13 @@ void perform(const Config& section, const std::filesystem::path& folder, Perform
   for (const std::string key : {"joints", "rest_frame"})
     if (section[key].given && !clip.given) section[key].fail("is given without a clip", "name a .bvh file as `clip`");
   if (!clip.given) return;
-  who.clip = performed(section, who, folder, who.warnings);
-  for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
-    if (const BodyPose& pose = who.clip.poses[f];
-        !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= largest_length))
-      clip.fail(fmt::format("moves the body absurdly far in frame {}", f),
-                fmt::format("repair it where it was made; up to {:g} m are allowed", largest_length));
-  who.fits_room = section["room"].numbers.empty();
-  leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
+  perform_clip(performed(section, who, folder, who.warnings), section, clip, who);
+}
+
+void place_performance(const Config& section, const std::string& name, Performance& who) {
+  who.name = name;
+  who.section = section;
+  who.motion = read_motion(section["motion"], body_at(who, 0));
 }
 
 Performance read_performance(const Config& section, const std::filesystem::path& folder) {
@@ -250,9 +265,7 @@ Performances read_performances(const Config& obstacles, const std::filesystem::p
     all.emplace_back();
     if (!section["body"].given) continue;
     const auto who = std::make_shared<Performance>(read_performance(section["body"], folder));
-    who->name = obstacle_name(section, all.size() - 1);
-    who->section = section;
-    who->motion = read_motion(section["motion"], body_at(*who, 0));
+    place_performance(section, obstacle_name(section, all.size() - 1), *who);
     all.back() = who;
   }
   return all;

@@ -2,6 +2,8 @@
 
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
+
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "physics/scene/scene_numbers.hpp"
@@ -14,21 +16,30 @@ namespace nb = nanobind;
 
 std::string text_of(const nb::object& value) { return nb::str(value).c_str(); }
 
-// The array as numpy makes it of any sequence, in one piece. `kinds` are the letters of dtypes that it may have.
-nb::object as_rows(const nb::handle& array, const char* type, const char* kinds, const std::string& where) {
+// The array as numpy makes it of any sequence, in one piece, with so many dimensions. `kinds` are the letters of dtypes
+// that it may have, `shape` says for people which shape it has to have.
+nb::object as_array(const nb::handle& array, const char* type, const char* kinds, int dimensions, const char* shape,
+                    const std::string& where) {
   const nb::module_ numpy = nb::module_::import_("numpy");
   nb::object given;
   try {
     given = numpy.attr("asarray")(array);
   } catch (const nb::python_error&) {
-    throw Error("is no array", where, "give an array of rows of three");
+    throw Error("is no array", where, std::string("give an array of ") + shape);
   }
   const std::string kind = nb::cast<std::string>(given.attr("dtype").attr("kind"));
-  if (std::string(kinds).find(kind) == std::string::npos)
+  const bool empty = nb::cast<std::size_t>(given.attr("size")) == 0;  // which numpy takes for float64
+  if (!empty && std::string(kinds).find(kind) == std::string::npos)
     throw Error("has the type " + text_of(given.attr("dtype")), where, std::string("give an array of ") + type);
-  if (nb::cast<int>(given.attr("ndim")) != 2 || nb::cast<Eigen::Index>(given.attr("shape")[nb::int_(1)]) != 3)
-    throw Error("has the shape " + text_of(given.attr("shape")), where, "give rows of three, n x 3");
+  const bool threes = shape[std::char_traits<char>::length(shape) - 1] == '3';
+  if (nb::cast<int>(given.attr("ndim")) != dimensions ||
+      (threes && nb::cast<Eigen::Index>(given.attr("shape")[nb::int_(-1)]) != 3))
+    throw Error("has the shape " + text_of(given.attr("shape")), where, std::string("give ") + shape);
   return numpy.attr("ascontiguousarray")(given, type);
+}
+
+nb::object as_rows(const nb::handle& array, const char* type, const char* kinds, const std::string& where) {
+  return as_array(array, type, kinds, 2, "rows of three, n x 3", where);
 }
 
 // An array of numpy's that owns its numbers; Array has data().
@@ -65,6 +76,39 @@ Triangles triangles_of(const nb::handle& array, Eigen::Index vertices, const std
       triangles(t, k) = static_cast<int>(v);
     }
   return triangles;
+}
+
+std::vector<int> vertices_of(const nb::handle& array, Eigen::Index vertices, const std::string& where) {
+  const nb::object list = as_array(array, "int64", "iu", 1, "a list of vertices", where);
+  const auto view = nb::cast<nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>>(list);
+  std::vector<int> all;
+  for (std::size_t k = 0; k < view.shape(0); ++k) {
+    if (view(k) < 0 || view(k) >= vertices)
+      throw Error("names vertex " + std::to_string(view(k)) + ", there are " + std::to_string(vertices), where,
+                  "number vertices from 0");
+    all.push_back(static_cast<int>(view(k)));
+  }
+  std::ranges::sort(all);
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+Eigen::MatrixXd matrix_of(const nb::handle& array, const std::string& where) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const nb::object given = as_array(array, "float64", "fiu", 2, "a matrix", where);
+  const auto view = nb::cast<nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>>(given);
+  return Eigen::Map<const RowMajor>(view.data(), static_cast<Eigen::Index>(view.shape(0)),
+                                    static_cast<Eigen::Index>(view.shape(1)));
+}
+
+std::vector<Points> frames_of(const nb::handle& array, const std::string& where) {
+  const nb::object given = as_array(array, "float64", "fiu", 3, "frames x n x 3", where);
+  const auto view = nb::cast<nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>>(given);
+  std::vector<Points> frames;
+  for (std::size_t f = 0; f < view.shape(0); ++f)
+    frames.push_back(
+        Eigen::Map<const Points>(view.data() + f * view.shape(1) * 3, static_cast<Eigen::Index>(view.shape(1)), 3));
+  return frames;
 }
 
 void warn(const std::vector<std::string>& warnings) {

@@ -1,12 +1,19 @@
 # The extension of the Python package. nanobind comes with its own Python package; scikit-build-core makes it known.
-find_package(Python 3.9 REQUIRED COMPONENTS Interpreter Development.Module OPTIONAL_COMPONENTS Development.SABIModule)
+find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module OPTIONAL_COMPONENTS Development.SABIModule)
 if(NOT nanobind_ROOT)
   execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir OUTPUT_STRIP_TRAILING_WHITESPACE
     OUTPUT_VARIABLE nanobind_ROOT)
 endif()
 find_package(nanobind CONFIG REQUIRED)
 file(GLOB sources CONFIGURE_DEPENDS python/*.cpp)
-nanobind_add_module(_selvedge NB_STATIC STABLE_ABI NB_SUPPRESS_WARNINGS ${sources})
+# With a backend, a Python package that holds nanobind's compiled part, one extension serves CPython 3.10 and later.
+# Without one it is linked into the extension, which then serves the Python that it is built with.
+if(SELVEDGE_PYTHON_BACKEND)
+  set(nanobind_mode BACKEND_MODULE ${SELVEDGE_PYTHON_BACKEND})
+else()
+  set(nanobind_mode NB_STATIC STABLE_ABI)
+endif()
+nanobind_add_module(_selvedge ${nanobind_mode} NB_SUPPRESS_WARNINGS ${sources})
 target_include_directories(_selvedge PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(_selvedge PRIVATE selvedge_studies selvedge_warnings)
 target_compile_features(_selvedge PRIVATE cxx_std_20)

@@ -8,13 +8,9 @@
 #include "collision/distance/signed_distance.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/untangle/untangle.hpp"
-#include "pipeline/compare/compare.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
-#include "pipeline/python/fields_nanobind.hpp"
-#include "pipeline/python/stepper_nanobind.hpp"
 #include "pipeline/tools/animated_run.hpp"
 
 namespace selvedge {
@@ -146,42 +142,6 @@ nb::dict distance_of_arrays(const nb::handle& points, const nb::handle& x, const
   return result;
 }
 
-nb::object compare_file(const std::filesystem::path& file, const nb::dict& kinds, const std::filesystem::path& out,
-                        const std::vector<std::string>& overrides, bool short_form) {
-  CompareRequest request;
-  request.file = file;
-  request.kinds = kinds_with(kinds, std::make_shared<HeldObjects::element_type>());
-  request.out = out;
-  request.overrides = overrides;
-  request.short_form = short_form;
-  request.stop = [] {
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();  // Ctrl-C
-    return false;
-  };
-  const CompareResult result = compare(request);
-  nb::object rows = nb::module_::import_("json").attr("loads")(compare_json(result));
-  rows["table"] = compare_table(result);
-  return rows;
-}
-
-nb::dict read_trajectory(const std::filesystem::path& file) {
-  const TrajectoryReader reader(file);
-  nb::list x, time, reports;
-  for (int k = 0; k < reader.frame_count(); ++k) {
-    const Frame frame = reader.frame(k);
-    x.append(copy_of(Points(frame.x.cast<double>())));
-    time.append(frame.time);
-    reports.append(dict_of(frame_fields(), frame));
-  }
-  nb::dict result;
-  result["triangles"] = copy_of(reader.info().triangles);
-  result["fps"] = reader.info().fps;
-  result["time"] = time;
-  result["x"] = x;
-  result["reports"] = reports;
-  return result;
-}
-
 nb::list read_surfaces(const std::filesystem::path& run, bool obstacles) {
   ExportRequest request;
   request.trajectory = trajectory_file(run);
@@ -247,9 +207,6 @@ void bind_tools(nb::module_& module) {
   module.def("untangle", &untangle_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(), "iterations"_a = 300,
              "Parts a cloth from itself and from bodies, arguments as for check. Returns positions, n x 3 [m], and a "
              "report: pairs_before, pairs_after, iterations.");
-  module.def("read_trajectory", &read_trajectory, "file"_a,
-             "A run's run.h5: triangles, m x 3; fps; time, a list [s]; x, a list of n x 3 [m], one a frame; reports, a "
-             "list of dicts, one a frame, by the names of docs/files.md.");
   module.def("read_surfaces", &read_surfaces, "run"_a, "obstacles"_a = false,
              "The cloths of a run (its run.h5 or folder), each by itself, and its obstacles, as exports have them: by "
              "the vertices and faces of the cloth's own file. A list of dicts: name; cloth, whether it is one; fps; "
@@ -260,11 +217,6 @@ void bind_tools(nb::module_& module) {
       "read_cache", &read_cache, "file"_a,
       "A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; at, when "
       "each sample is, in frames of that rate; x, a list of n x 3 in the file's unit, one a sample.");
-  module.def("compare", &compare_file, "file"_a, "kinds"_a = nb::dict(), "out"_a = std::filesystem::path("out/compare"),
-             "overrides"_a = std::vector<std::string>{}, "short"_a = false,
-             "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "
-             "What is finished is kept in the folder out, by the file's settings: empty it when a class has changed. "
-             "Returns what compare.json holds, and table, a text.");
 }
 
 }  // namespace selvedge

@@ -14,6 +14,7 @@
 #include "pipeline/scene/setup_selection.hpp"
 #include "pipeline/scene/setup_sheet.hpp"
 #include "pipeline/scene/setup_start.hpp"
+#include "pipeline/scene/worn_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -172,6 +173,15 @@ std::vector<ClothPart> read_worn(const Config& section, const std::filesystem::p
   return parts;
 }
 
+// Start and pins of a cloth whose shape is read.
+void finish_cloth(const Config& section, std::vector<std::string>& warnings, ClothPart& one) {
+  apply_start(section["start"], one, warnings);
+  one.first = one.mesh.x;
+  for (const Config& pin : section["pins"].items) one.pins.push_back(read_pin(pin, one));
+  if (one.worn && !one.worn->garment.pins.empty())
+    one.pins.push_back(following(one.worn, one.worn->garment.pins, "of the garment"));
+}
+
 }  // namespace
 
 std::vector<RestTriangle> flattened(const Points& x, const Triangles& triangles, const Vec3& weft) {
@@ -203,14 +213,19 @@ std::vector<ClothPart> read_cloths(Config& section, const std::string& default_n
     parts = read_worn(section, folder, bodies, warnings, part);
   else
     parts = read_copies(section, folder, warnings, part);
-  for (ClothPart& one : parts) {
-    apply_start(section["start"], one, warnings);
-    one.first = one.mesh.x;
-    for (const Config& pin : section["pins"].items) one.pins.push_back(read_pin(pin, one));
-    if (one.worn && !one.worn->garment.pins.empty())
-      one.pins.push_back(following(one.worn, one.worn->garment.pins, "of the garment"));
-  }
+  for (ClothPart& one : parts) finish_cloth(section, warnings, one);
   return parts;
+}
+
+ClothPart worn_cloth(Config& section, const std::string& name, std::shared_ptr<const Wearing> worn,
+                     const std::filesystem::path& folder, std::vector<std::string>& warnings) {
+  ClothPart part;
+  part.name = name;
+  part.material = read_material(section["material"], folder);
+  part.worn = std::move(worn);
+  read_shape(section, folder, warnings, part);
+  finish_cloth(section, warnings, part);
+  return part;
 }
 
 }  // namespace selvedge

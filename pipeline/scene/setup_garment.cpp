@@ -14,6 +14,7 @@
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/worn_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -105,23 +106,30 @@ std::string frame_cure(const Points& x, const Points& body, const Triangles& tri
                      frame->up == Up::y ? "y" : "z", otherwise);
 }
 
-// A mesh that lies where the body wears it in its zero pose and the shape that its section gives.
+// A mesh that lies where the body wears it in its zero pose and the shape that its section gives. `as_read`: its
+// positions before unit and axis were applied.
+Garment dressed_as_worn(const Config& section, const std::string& name, const Mesh& mesh, const Performance& who,
+                        const Points& as_read) {
+  const Points body = shaped(who.body.skin, who.given_shape);
+  if (worn_part(mesh.x, body).places.empty())
+    section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
+                         frame_cure(as_read, body, who.body.skin.triangles));
+  const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
+  Garment garment = dressed(mesh, who.body, how).garment;
+  garment.name = name;
+  return garment;
+}
+
 Garment read_dressed(const Config& section, const std::filesystem::path& file, const Performance& who,
                      std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
   read_materials(mesh);
-  const Points as_read = mesh.x, body = shaped(who.body.skin, who.given_shape);
+  const Points as_read = mesh.x;
   mesh.x = read_unit(section["unit"]) * with_y_up(mesh.x, section["up"].text() == "z" ? Up::z : Up::y);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
-  if (worn_part(mesh.x, body).places.empty())
-    section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
-                         frame_cure(as_read, body, who.body.skin.triangles));
   read_weld(section, file.string(), mesh);
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};
-  Garment garment = dressed(mesh, who.body, how).garment;
-  garment.name = file.stem().string();
-  return garment;
+  return dressed_as_worn(section, file.stem().string(), mesh, who, as_read);
 }
 
 // Keys that what gives the garment does not use are mistakes. Defaults are written into the configurations of runs, so
@@ -162,6 +170,16 @@ Garment read_file(const Config& section, const std::filesystem::path& folder, co
   return garment;
 }
 
+std::shared_ptr<const Wearing> worn_by(const std::shared_ptr<const Performance>& who, Garment garment) {
+  SkinWeights skin;
+  Footing footing;
+  if (who->soft_tissue) {
+    skin = shares_of_body(garment.skin.rest, who->body, skin_width);
+    footing = footing_of(garment.skin.rest, {who->surface, who->body.skin.rest});
+  }
+  return std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)});
+}
+
 }  // namespace
 
 std::vector<Garment> read_garments(const Config& section, const std::filesystem::path& folder, const Performance& who,
@@ -184,16 +202,20 @@ std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, c
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
   std::vector<std::shared_ptr<const Wearing>> worn;
-  for (Garment& garment : read_garments(section, folder, *who, warnings)) {
-    SkinWeights skin;
-    Footing footing;
-    if (who->soft_tissue) {
-      skin = shares_of_body(garment.skin.rest, who->body, skin_width);
-      footing = footing_of(garment.skin.rest, {who->surface, who->body.skin.rest});
-    }
-    worn.push_back(std::make_shared<Wearing>(Wearing{std::move(garment), who, std::move(skin), std::move(footing)}));
-  }
+  for (Garment& garment : read_garments(section, folder, *who, warnings))
+    worn.push_back(worn_by(who, std::move(garment)));
   return worn;
+}
+
+std::shared_ptr<const Wearing> wear_mesh(const Config& cloth, const std::string& name, const Mesh& mesh,
+                                         const std::optional<std::vector<int>>& pins, const Performances& bodies) {
+  const Config& section = cloth["garment"];
+  check_placed_by_body(cloth);
+  const auto who = wearer(section, bodies);
+  Garment garment = dressed_as_worn(section, name, mesh, *who);
+  if (pins) garment.pins = *pins;
+  if (!section["pins"].flag()) garment.pins.clear();
+  return worn_by(who, std::move(garment));
 }
 
 Mesh rest_mesh(const Wearing& wearing) {

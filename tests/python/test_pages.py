@@ -1,4 +1,5 @@
-"""The Python of README.md and docs/python.md: every block runs as it stands there, beside the files that it names."""
+"""The Python of README.md and docs/python.md: every block runs as it stands there, by itself (`python -c`), beside the
+files that it names."""
 
 import os
 import pathlib
@@ -9,6 +10,7 @@ import pytest
 
 import selvedge
 
+RUN, BODY, SCENES, ALEMBIC, STEPPER = range(1, 6)  # the blocks of docs/python.md after the first
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 FILES = {
@@ -39,8 +41,8 @@ def folder(tmp_path, monkeypatch):
 
 
 def run_block(page, number):
-    """What the names of a block have come to. Blocks after the first one of a page rely on its imports."""
-    names = {"np": np, "selvedge": selvedge} if number > 0 else {}
+    """What the names of a block have come to."""
+    names = {}
     exec(compile(blocks(page)[number], f"{page}, Python block {number + 1}", "exec"), names)
     return names
 
@@ -58,17 +60,40 @@ def test_a_run_goes_out_as_alembic(folder):
     if not program:
         pytest.skip("SELVEDGE_PROGRAM is not set")
     subprocess.run([program, "simulate", "scene.yaml", "--out", "out/walk", "--no-view"], check=True, capture_output=True)
-    run = run_block("docs/python.md", 1)["run"]
+    run = run_block("docs/python.md", ALEMBIC)["run"]
     (mesh,) = selvedge.read_alembic("walk.abc").values()
-    assert mesh["fps"] == pytest.approx(30) and (np.array(mesh["x"]) == np.array(run["x"], np.float32)).all()
+    assert mesh["fps"] == pytest.approx(30) and (np.array(mesh["x"]) == run["x"]).all()
 
 
 def test_a_stepper_in_python(folder):
-    names = run_block("docs/python.md", 2)
+    names = run_block("docs/python.md", STEPPER)
     assert names["scene"].step() and names["scene"].v[:, 1] == pytest.approx(-9.81 / 30)
     (row,) = names["rows"]
     assert row["setting"] == "falling" and not row["trouble"] and row["finished"] == 1
 
 
+def test_a_run_is_recorded_read_exported_and_shown(folder, capsys):
+    try:
+        run_block("docs/python.md", RUN)
+    except selvedge.Error as error:
+        if "three" not in str(error):
+            raise
+        pytest.skip("three.js is not there")
+    assert "4 frames" in capsys.readouterr().out and (folder / "out/fall/run.glb").exists()
+    assert (folder / "fall.html").read_text(encoding="utf-8").startswith("<!")
+
+
+def test_a_sleeve_on_a_limb(folder, capsys):
+    scene = run_block("docs/python.md", BODY)["scene"]
+    assert scene.frame == 15 and scene.clean and "270 vertices" in capsys.readouterr().out
+
+
+def test_scenes_side_by_side(folder):
+    names = run_block("docs/python.md", SCENES)
+    assert names["accepted"] == 3 * [True]
+    heights = [scene.x[:, 1].min() for scene in names["scenes"]]
+    assert heights == sorted(heights, reverse=True) and len(set(heights)) == 3
+
+
 def test_no_block_is_left_out():
-    assert len(blocks("README.md")) == 1 and len(blocks("docs/python.md")) == 3  # a new block needs a test of its own
+    assert len(blocks("README.md")) == 1 and len(blocks("docs/python.md")) == 6  # a new block needs a test of its own

@@ -242,8 +242,7 @@ def test_a_run_has_the_bits_of_the_program(tmp_path):
     positions = [scene.x.astype(np.float32)]
     selvedge.simulate(scene, callback=lambda s: positions.append(s.x.astype(np.float32)))
     assert len(positions) == len(run["x"]) == 101
-    for ours, theirs in zip(positions, run["x"]):
-        assert (ours == theirs.astype(np.float32)).all()
+    assert (np.array(positions) == run["x"]).all()
     assert (scene.triangles == run["triangles"]).all()
     last = run["reports"][-1]
     assert last["time"] == run["time"][-1] and last["status"] == "accepted" and last["self_pairs"] == 0

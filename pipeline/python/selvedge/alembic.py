@@ -26,8 +26,8 @@ class AlembicMesh(TypedDict):
 
 def _library():
     try:
-        from alembic3d import Abc, AbcCoreAbstract, AbcGeom
-        from imath import IntArrayFromBuffer, V3fArrayFromBuffer
+        from alembic3d import Abc, AbcCoreAbstract, AbcGeom  # pyright: ignore[reportMissingImports]
+        from imath import IntArrayFromBuffer, V3fArrayFromBuffer  # pyright: ignore[reportMissingImports]
     except ImportError as why:
         raise Error(f"alembic3d: cannot be imported ({why}); pip install alembic3d") from why
     return Abc, AbcCoreAbstract, AbcGeom, IntArrayFromBuffer, V3fArrayFromBuffer

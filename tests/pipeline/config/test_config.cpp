@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/config_text.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/tools/scene_pages.hpp"
@@ -329,6 +330,20 @@ TEST_CASE("Keys of scene files: one that has become a constant may be given as i
   const auto file = fake::write(folder, "scene.yaml", sheet);
   CHECK_NOTHROW(read_setup(file, {"solver.response.room.few=0.01"}));
   CHECK_THROWS_WITH(read_setup(file, {"run.recovery.astray=3"}), Contains("is a constant now"));
+}
+
+TEST_CASE("config: a section as JSON of another language is checked by its table", "[config]") {
+  const auto read = [](const std::string& text) {
+    return read_section(text, table::cloth_section(), "sheet of arrays");
+  };
+  const Config cloth = read(R"({"name": "a", "rectangle": {"edge": "5 cm"}, "material": {"density": 0.15}})");
+  CHECK(cloth["material"]["density"].number() == 0.15);
+  CHECK(cloth["rectangle"]["edge"].number() == 0.05);
+  CHECK_THROWS_WITH(read(R"({"rectangle": {}, "material": {"densty": 1}})"),
+                    Contains("sheet of arrays") && Contains("densty") && Contains("did you mean `density`"));
+  CHECK_THROWS_WITH(read(R"({"rectangle": {}, "material": {"density": -1}})"), Contains("material.density"));
+  CHECK_THROWS_WITH(read("[1, 2]"), Contains("is no dictionary"));
+  CHECK_THROWS_WITH(read("{"), Contains("is not YAML"));
 }
 
 TEST_CASE("The scenes in docs/scene.md and docs/start.md can be read", "[config]") {

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/frame/frame_audits.hpp"
+#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
+#include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/scene/cloth_part.hpp"
+#include "pipeline/scene/setup.hpp"
+
+namespace selvedge {
+
+// A frame after the present one, before the scene takes it over.
+struct SteppedFrame {
+  StepReport report;
+  State state;  // not to be used if the step was rejected
+  Drive drive;
+  double seconds = 0;
+};
+
+// selvedge.Scene: a scene with its state and stepper, from arrays or from a scene file.
+class SceneObject {
+ public:
+  explicit SceneObject(const nanobind::object& stepper);
+  SceneObject(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+              const nanobind::dict& kinds);
+  SceneObject(const SceneObject&) = delete;
+  SceneObject& operator=(const SceneObject&) = delete;
+
+  int add_cloth_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const std::string& name,
+                       std::optional<double> density, std::optional<double> youngs_modulus,
+                       std::optional<double> poisson, std::optional<double> bending, const nanobind::object& material,
+                       const nanobind::object& pins);
+  int add_garment_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const std::string& name,
+                         const nanobind::object& on, const nanobind::object& material, const std::string& fit,
+                         const nanobind::object& pins, const nanobind::kwargs& keys);
+  int add_obstacle_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const std::string& name);
+  int add_body_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const nanobind::handle& joints,
+                      const nanobind::handle& weights, const nanobind::handle& parents, const nanobind::object& poses,
+                      const nanobind::object& translations, double fps, const nanobind::object& joint_names,
+                      const std::string& name, const nanobind::object& room, const nanobind::kwargs& keys);
+  void move_obstacle(int number, const nanobind::handle& x);
+
+  // The next frame. Changes nothing that others can see; several scenes may do this at once.
+  SteppedFrame next_frame(const StopFlag& stop);
+  // Takes the frame over, and records it where that was asked for. False where its step was rejected, which leaves
+  // everything as it was. HDF5 wants one thread at a time.
+  bool keep(SteppedFrame);
+  // Both, with Ctrl-C.
+  bool step();
+
+  // Every frame from the present one on goes into a trajectory file, until the recording ends.
+  void record(const std::filesystem::path& file);
+  void end_recording();
+
+  void save(const std::filesystem::path& file);
+  void restore(const std::filesystem::path& file);
+
+  const Scene& scene() const { return setup_.scene; }
+  State& state();
+  int pairs() const { return pairs_; }
+  const std::optional<StepReport>& report() const { return report_; }
+  double fps() const { return setup_.run.fps; }
+  int frames() const { return setup_.run.frames; }
+  // Where obstacles are, also before the first step.
+  const std::vector<Points>& obstacles() const { return stepper_ ? state_.obstacles : obstacles_; }
+  std::string described() const;  // its repr
+
+  // For Python's collector of cycles: all that it holds of Python, and to let go of it. It is no use after that.
+  static int traverse(PyObject* self, visitproc visit, void* arg);
+  static int clear(PyObject* self);
+
+ private:
+  struct Recording {
+    TrajectoryWriter writer;
+    EnergyTerms terms;
+  };
+  void must_be_open() const;
+  void begin();
+  Drive drive_of_arrays(double time) const;
+  void add_part(ClothPart part);
+  void take_over(State next);
+
+  HeldObjects held_ = std::make_shared<HeldObjects::element_type>();
+  Setup setup_;
+  MakeStepper make_;  // of a scene from arrays
+  // The parts of a scene from arrays. For each obstacle: where it is, or was added; which vertex stands for each
+  // (welded_surface.hpp); the body that it is, or null; and its pose, empty for what is no body.
+  std::vector<ClothPart> cloths_;
+  std::vector<Points> obstacles_;
+  std::vector<std::vector<int>> joined_;
+  Performances bodies_;
+  std::vector<std::function<BodyFrame(double time)>> body_frames_;
+  std::function<Points(double time)> skinned_targets_;  // empty: nothing is worn
+  State state_;
+  std::unique_ptr<Stepper> stepper_;
+  FrameAudits audits_{setup_.scene};
+  std::optional<StepReport> report_;  // of the last step
+  int pairs_ = -1;
+  std::unique_ptr<Recording> recording_;
+};
+
+}  // namespace selvedge

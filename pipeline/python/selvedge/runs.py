@@ -1,0 +1,89 @@
+"""Runs: made, exported, shown."""
+
+from __future__ import annotations
+
+import html
+import operator
+import os
+import pathlib
+from collections.abc import Callable, Sequence
+
+from ._selvedge import Error, Scene, export_run, page_of
+from .progress import progress_bar
+
+Path = str | os.PathLike[str]
+
+
+def simulate(
+    scene: Scene,
+    frames: int | None = None,
+    callback: Callable[[Scene], bool | None] | None = None,
+    *,
+    out: Path | None = None,
+    progress: bool | None = None,
+) -> int:
+    """Steps to that frame (the scene file's by default), or until a step is rejected or the callback, which is called
+    with the scene after every frame, returns False. out: a folder in which run.h5 gets the present state and every
+    frame after it, for read_trajectory, export and view; a run.h5 that is there is replaced. progress: a bar of tqdm;
+    None: where tqdm is installed and somebody looks. Returns the frame that was reached."""
+    try:
+        frames = scene.frames if frames is None else operator.index(frames)
+    except TypeError:
+        raise Error(f"simulate: frames is {frames!r}\n  cure: give a whole number") from None
+    if frames < 0:
+        raise Error(f"simulate: frames is {frames}\n  cure: give 0 or more")
+    if out is not None:
+        pathlib.Path(out).mkdir(parents=True, exist_ok=True)
+        scene._record(pathlib.Path(out) / "run.h5")
+    try:
+        with progress_bar("frame", progress) as show:
+            first = scene.frame
+            while scene.frame < frames and scene.step():
+                if show is not None:
+                    show(scene.frame - first, frames - first)
+                if callback is not None and callback(scene) is False:
+                    break
+    finally:
+        if out is not None:
+            scene._end_recording()
+    return scene.frame
+
+
+def export(
+    run: Path, format: str = "obj", out: Path = "export", *, obstacles: bool = False, progress: bool | None = None
+) -> list[pathlib.Path]:
+    """Writes a run (a trajectory, or the folder of one) for other programs, into the folder out. format: obj, ply,
+    pc2, mdd, glb, usda or xdmf (docs/export.md); obstacles: also the obstacles; progress: as for simulate. Returns the
+    files in order."""
+    with progress_bar("frame", progress) as show:
+        return export_run(run, format, out, obstacles, show)
+
+
+class Page:
+    """A page that plays runs. A notebook shows it in a frame; `save` writes it for a browser."""
+
+    def __init__(self, text: str, runs: list[str]) -> None:
+        self.text = text  # HTML, which needs no other file and no network
+        self.runs = runs
+
+    def save(self, file: Path) -> pathlib.Path:
+        """Writes the page, and returns where it is."""
+        path = pathlib.Path(file)
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{html.escape(self.text)}" '
+            'style="width: 100%; height: 640px; border: 0" allowfullscreen></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        return f"<selvedge.Page of {', '.join(self.runs)}: {len(self.text) / 1e6:.1f} MB>"
+
+
+def view(runs: Path | Sequence[Path], *, limit: int = 60_000_000) -> Page:
+    """The page that plays a run, or several side by side (trajectories, or folders of runs). limit: of its geometry, in
+    bytes: runs above their share of it are drawn at every k-th frame."""
+    all_runs = [runs] if isinstance(runs, (str, os.PathLike)) else list(runs)
+    return Page(page_of(all_runs, limit), [os.fspath(run) for run in all_runs])

@@ -1,0 +1,98 @@
+"""Trajectories: what runs have recorded, as arrays."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from ._selvedge import Error, Report, trajectory_contents, trajectory_frames
+
+Floats = npt.NDArray[np.float32]
+Path = str | os.PathLike[str]
+
+
+class RecordedObstacle(TypedDict):
+    """An obstacle of a run."""
+
+    name: str
+    triangles: npt.NDArray[np.int32]
+    x: Floats  # frames x k x 3 [m], to be read only; of an obstacle that never moves a view of one frame
+
+
+if TYPE_CHECKING:
+
+    class Trajectory(TypedDict):
+        """A run, as read_trajectory describes it."""
+
+        x: Floats
+        time: npt.NDArray[np.float64]
+        fps: float
+        triangles: npt.NDArray[np.int32]
+        rest: npt.NDArray[np.float64]
+        cloths: list[tuple[str, int, int]]
+        pins: npt.NDArray[np.int32]
+        obstacles: list[RecordedObstacle]
+        reports: list[Report]
+
+else:
+
+    class Trajectory(dict):
+        """A run, as read_trajectory describes it: a dict whose repr says sizes."""
+
+        def __repr__(self) -> str:
+            frames, vertices, _ = self["x"].shape
+            cloths, triangles, obstacles = (len(self[name]) for name in ("cloths", "triangles", "obstacles"))
+            return (
+                f"<selvedge.Trajectory: {_counted(frames, 'frame')} at {self['fps']:g} frames a second; "
+                f"{_counted(cloths, 'cloth')} of {vertices} vertices, {_counted(triangles, 'triangle')}; "
+                f"{_counted(obstacles, 'obstacle')}>"
+            )
+
+
+def read_trajectory(file: Path, frames: slice | None = None, into: Path | None = None) -> Trajectory:
+    """A run: its run.h5, or the folder of one; it may still be growing. frames: which, as slice(0, None, 10); None:
+    all. into: a file (.npy) that becomes the array x, mapped into memory, for runs that are larger than the memory;
+    run.h5 itself cannot be mapped, since it keeps every frame in a place of its own.
+
+    Returns x, positions, frames x n x 3 of float32 [m]; time, of each frame [s]; fps; triangles, m x 3; rest, n x 3
+    [m]; cloths, of each its name, its first vertex and the end of its vertices; pins, vertices; obstacles, of each
+    name, triangles and x, frames x k x 3 [m]; reports, a dict a frame by the names of docs/files.md."""
+    contents = trajectory_contents(file)
+    count = contents["frame_count"]
+    numbers = list(range(count)) if frames is None else list(range(count))[frames]
+    x = _array(into, (len(numbers), len(contents["rest"]), 3))
+    bodies = [
+        np.empty((len(x) if body["moving"] else min(len(x), 1), body["vertex_count"], 3), dtype=np.float32)
+        for body in contents["obstacles"]
+    ]
+    reports = trajectory_frames(file, numbers, x, bodies)
+    obstacles: list[RecordedObstacle] = [
+        {"name": body["name"], "triangles": body["triangles"], "x": np.broadcast_to(own, (len(x), *own.shape[1:]))}
+        for body, own in zip(contents["obstacles"], bodies)
+    ]
+    return Trajectory(
+        x=x,
+        time=np.array([report["time"] for report in reports], dtype=np.float64),
+        fps=contents["fps"],
+        triangles=contents["triangles"],
+        rest=contents["rest"],
+        cloths=contents["cloths"],
+        pins=contents["pins"],
+        obstacles=obstacles,
+        reports=reports,
+    )
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _array(into: Path | None, shape: tuple[int, int, int]) -> Floats:
+    if into is None:
+        return np.empty(shape, dtype=np.float32)
+    if 0 in shape:
+        raise Error(f"{os.fspath(into)}: there is nothing to map into memory: {shape[0]} frames of {shape[1]} vertices")
+    return np.lib.format.open_memmap(os.fspath(into), mode="w+", dtype=np.float32, shape=shape)
