@@ -212,7 +212,7 @@ std::shared_ptr<const Wearing> wear_mesh(const Config& cloth, const std::string&
   const Config& section = cloth["garment"];
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
-  Garment garment = dressed_as_worn(section, name, mesh, *who);
+  Garment garment = dressed_as_worn(section, name, mesh, *who, mesh.x);
   if (pins) garment.pins = *pins;
   if (!section["pins"].flag()) garment.pins.clear();
   return worn_by(who, std::move(garment));

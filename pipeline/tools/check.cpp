@@ -151,6 +151,7 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
   report.closed = reader.closed();
   if (!info.self_audited) report.warnings.push_back("the run left cloth-cloth contact out; it is checked all the same");
   if (!report.closed) report.warnings.push_back("the trajectory was not closed: its writer was stopped or is at work");
+  warn_of_seams(info, report);
   Bodies bodies;
   for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(body.vertex_count, body.triangles, Points());
   add_body_files(request, bodies, report);
