@@ -46,7 +46,7 @@ class Work:
         return [line.split(",")[0] for line in (self.out / "table.csv").read_text().splitlines()]
 
 
-def wait_until(condition, what, seconds=60):
+def wait_until(condition, what, seconds=300):
     """A bound on what hangs, not on what is slow."""
     end = time.monotonic() + seconds
     while not condition():

@@ -1,7 +1,8 @@
-"""Stands in for the program in tests of selvedge.fleet: `cells`, `cell` and `gather` by the contract of docs/scale.md.
+"""Stands in for the program in tests of selvedge.fleet: its commands `cells`, `cell` and `gather` (docs/scale.md).
 
-FILE is JSON: "marks", a folder in which every try leaves a file, "needs", files, and "cells", each with "name" and where
-wanted "cost"; "status" to end with; "deaths", how many tries kill themselves; "held", to wait until marks/release is there.
+FILE is JSON: "marks", a folder in which every try leaves a file, "needs", files, and "cells", each with "name" and
+where wanted "cost"; "status" to end with; "deaths", how many tries kill themselves; "held", to wait until
+marks/release is there.
 """
 
 import argparse

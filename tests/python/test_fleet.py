@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -14,8 +15,11 @@ from cells_of_fleet import Work, gone, wait_until
 
 import selvedge
 from selvedge import fleet
-from selvedge.fleet import ray_worker
+from selvedge.fleet import listing, ray_worker
+from selvedge.fleet.progress import Progress
 from selvedge.fleet.ray_engine import keep_result
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def run(work, **options):
@@ -95,9 +99,23 @@ def test_bad_arguments(tmp_path, options, says):
     assert not work.tries()
 
 
+def test_progress_is_one_line_and_what_is_kept_takes_no_time(capsys):
+    cells = [listing.Cell(name, (), cost) for name, cost in (("kept", 1000), ("a", 1), ("b", 3), ("c", 4))]
+    said = Progress(cells, {"kept"}, shown=True)
+    said.ended("kept", "done")
+    assert said.line(100.9) == "1 of 4 cells, 0:01:40 so far"
+    said.ended("a", "again")
+    said.ended("a", "failed")
+    said.ended("b", "done")
+    assert said.line(100.9) == "3 of 4 cells, 1 failed, 1 lost and tried again, 0:01:40 so far, about 0:01:40 to go"
+    said.show()
+    said.show(last=True)
+    assert capsys.readouterr().err.startswith("3 of 4 cells, 1 failed, 1 lost and tried again, 0:0")
+
+
 def start_command(work, *options):
-    command = [sys.executable, "-m", "selvedge.fleet", work.file, "--out", work.out, "--program", work.program, *options]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    command = [sys.executable, "-m", "selvedge.fleet", work.file, "--out", work.out, "--program", work.program]
+    return subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
@@ -107,7 +125,7 @@ def test_no_child_outlives_the_command(tmp_path, how):
     command = start_command(work, "--workers", "2")
     wait_until(lambda: len(work.tries()) == 3, "two held cells")
     os.kill(command.pid, how)
-    _, said = command.communicate(timeout=60)
+    _, said = command.communicate(timeout=300)
     for _, process, *_ in work.tries():
         wait_until(lambda: gone(process), "the end of a child")
     assert len(work.tries()) == 3 and os.listdir(work.out / "cells") == ["quick"]
@@ -116,20 +134,20 @@ def test_no_child_outlives_the_command(tmp_path, how):
         assert command.returncode == 1 and "the same command goes on" in said
     work.release()
     command = start_command(work)
-    printed, _ = command.communicate(timeout=60)
+    printed, _ = command.communicate(timeout=300)
     assert command.returncode == 0 and len(printed.splitlines()) == 5 and len(work.tries("quick")) == 1
 
 
 def test_the_command_says_what_is_missing(tmp_path):
     work = Work(tmp_path, [{"name": "bad", "status": 2}, {"name": "good"}, {"name": "torn", "status": 1}])
     command = start_command(work)
-    printed, said = command.communicate(timeout=60)
+    printed, said = command.communicate(timeout=300)
     assert command.returncode == 1 and [line.split(",")[0] for line in printed.splitlines()] == ["good", "torn"]
     assert "bad: missing: bad: has a bad number" in said and "torn: failed: its row failed" in said
     assert "3 of 3 cells, 2 failed" in said
     work.file.unlink()
     command = start_command(work, "--quiet")
-    _, said = command.communicate(timeout=60)
+    _, said = command.communicate(timeout=300)
     assert command.returncode == 2 and said.startswith("error: selvedge cells: ") and said.endswith("no such file\n")
 
 
@@ -188,3 +206,15 @@ def test_a_known_result_stays_where_it_fits_and_is_replaced_where_not(tmp_path, 
         keep_result(work.out, "a", known)
         assert ray_worker.read_files(work.out / "cells" / "a") == known
     assert os.listdir(work.out / "cells") == ["a"]
+
+
+def test_the_python_of_the_page(tmp_path, monkeypatch, capsys):
+    work = Work(tmp_path, [{"name": "good"}, {"name": "torn", "status": 1}])
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "site-packages" / "selvedge" / "fleet" / "listing.py"))
+    monkeypatch.chdir(work.file.parent)
+    work.file.rename("work.yaml")
+    (block,) = (ROOT / "docs" / "scale.md").read_text().split("```python\n")[1:]
+    exec(compile(block.split("```")[0], "docs/scale.md", "exec"), {})
+    assert capsys.readouterr().out.splitlines()[-1] == "1 done, 1 failed, 0 missing"
+    assert (work.file.parent / "out" / "work" / "table.csv").is_file()

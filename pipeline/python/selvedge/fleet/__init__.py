@@ -1,4 +1,4 @@
-"""Many cells on many cores or machines: runs the program `selvedge`, which lists, does and gathers the cells of a file."""
+"""Many cells on many cores or machines, by the program `selvedge`, which lists, does and gathers them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import pathlib
 import time
 from collections import Counter, deque
 
-from .cell_process import CellEnd
-from .listing import Cell, Error, Listing, call, find_program, list_cells
+from .cell_process import CellEnd, result_folder
+from .listing import Error, Listing, call, find_program, list_cells
 from .local_engine import LocalEngine
 from .progress import Progress
 
@@ -41,20 +41,21 @@ def run(
 ) -> FleetResult:
     """Does all cells of a file into a folder and gathers them, the dearest first, each with one thread.
 
-    engine: "local", processes of this machine, or "ray", tasks of a Ray cluster. program: `selvedge`; None: the one beside
-    the package in a build folder, or on PATH. workers: cells at a time; None: one a core. retries: how often a cell is
-    tried again whose process, worker or node died. address: of the Ray cluster; None: as Ray finds one, or starts one
-    here. shared: the file, all that cells need, and `out` have the same paths on every node; otherwise files travel.
+    engine: "local", processes of this machine, or "ray", tasks of a Ray cluster. program: `selvedge`; None: the one
+    beside the package in a build folder, or on PATH. workers: cells at a time; None: one a core. retries: how often a
+    cell is tried again whose process, worker or node died. address: of the Ray cluster; None: as Ray finds one, or
+    starts one here. shared: the file, all that cells need, and `out` have the same paths on every node; otherwise files
+    travel.
 
-    Results that are there and fit are kept. Raises Error where the file, the program or an argument is bad; a cell that is
-    refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running and comes out as
+    Results that are there and fit are kept. Raises Error where the file, the program or an argument is bad; a cell that
+    is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running and comes out as
     KeyboardInterrupt; the same call then goes on."""
     begun = time.monotonic()
     _check(engine, workers, retries)
     listing = list_cells(find_program(program), file)
     folder = pathlib.Path(out).absolute()
     folder.mkdir(parents=True, exist_ok=True)
-    said = Progress({cell.name: cell.cost for cell in listing.cells}, progress)
+    said = Progress(listing.cells, {c.name for c in listing.cells if result_folder(folder, c.name).is_dir()}, progress)
     ends = _do_all(listing, _engine(engine, listing, str(folder), workers, address, shared), retries, said)
     by_state = {state: {e.name: e.message for e in ends if e.state == state} for state in ("done", "failed")}
     missing = {e.name: e.message for e in ends if e.state in ("refused", "lost")}

@@ -30,8 +30,8 @@ def result_folder(out: pathlib.Path, name: str) -> pathlib.Path:
 
 
 def start_cell(program: str, key: str, file: str, name: str, out: str) -> subprocess.Popen:
-    """Starts one cell, with one thread. It ends with the thread that started it, also where that is killed. A terminal's
-    Ctrl-C does not reach it."""
+    """Starts one cell, with one thread. It ends with the thread that started it, also where that is killed. A
+    terminal's Ctrl-C does not reach it."""
     command = [program, "cell", file, name, "--out", out, "--program", key]
     return subprocess.Popen(
         command,

@@ -5,16 +5,19 @@ from __future__ import annotations
 import sys
 import time
 
+from .listing import Cell
+
 PAUSE = 30  # seconds between lines where standard error is a file
 
 
 class Progress:
     """Says how far a run is: over the line before on a terminal, now and then on a line of its own elsewhere."""
 
-    def __init__(self, costs: dict[str, float], shown: bool) -> None:
-        self._left = dict(costs)
-        self._all = sum(costs.values())
-        self._count = len(costs)
+    def __init__(self, cells: list[Cell], kept: set[str], shown: bool) -> None:
+        """`kept`: names of cells whose results are there, and which take no time."""
+        self._left = {cell.name: 0.0 if cell.name in kept else cell.cost for cell in cells}
+        self._all = sum(self._left.values())
+        self._count = len(cells)
         self._failed = self._tries = 0
         self._shown, self._begun, self._said = shown, time.monotonic(), time.monotonic()
 
@@ -29,16 +32,16 @@ class Progress:
     def show(self, last: bool = False) -> None:
         if not self._shown:
             return
-        terminal = sys.stderr.isatty()
-        if terminal:
-            sys.stderr.write(f"\r\033[K{self.line()}" + ("\n" if last else ""))
-        elif last or time.monotonic() - self._said > PAUSE:
-            self._said = time.monotonic()
-            sys.stderr.write(self.line() + "\n")
+        now = time.monotonic()
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r\033[K{self.line(now - self._begun)}" + ("\n" if last else ""))
+        elif last or now - self._said > PAUSE:
+            self._said = now
+            sys.stderr.write(self.line(now - self._begun) + "\n")
         sys.stderr.flush()
 
-    def line(self) -> str:
-        seconds = time.monotonic() - self._begun
+    def line(self, seconds: float) -> str:
+        """After so many seconds."""
         done = self._all - sum(self._left.values())
         parts = [f"{self._count - len(self._left)} of {self._count} cells"]
         if self._failed:

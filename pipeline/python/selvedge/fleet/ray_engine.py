@@ -11,7 +11,7 @@ import uuid
 from typing import Any
 
 from . import cell_process, ray_worker
-from .cell_process import GRACE, CellEnd, result_folder
+from .cell_process import GRACE, LONGEST_MESSAGE, CellEnd, result_folder
 from .listing import Cell, Error, Listing
 
 
@@ -49,7 +49,7 @@ class RayEngine:
         try:
             end, files = self._ray.get(ready[0])
         except self._ray.exceptions.RayError as why:  # the worker or its node is gone, or the node's disk is full
-            end, files = CellEnd(name, "lost", str(why).strip()), None
+            end, files = CellEnd(name, "lost", str(why).strip()[-LONGEST_MESSAGE:]), None
         if files is not None:
             keep_result(self._out, name, files)
         del self._running[ready[0]]
@@ -164,6 +164,7 @@ def _program_files(program: pathlib.Path) -> dict[str, bytes]:
     folder = program.resolve().parent
     for configs in (folder / "../share/selvedge/configs", folder / "configs", folder / "../../configs"):
         if configs.is_dir():
-            files = {f"configs/{file.relative_to(configs)}": file.read_bytes() for file in sorted(configs.rglob("*.yaml"))}
+            scenes = sorted(configs.rglob("*.yaml"))
+            files = {f"configs/{file.relative_to(configs)}": file.read_bytes() for file in scenes}
             return {**files, "selvedge": program.read_bytes()}
     return {"selvedge": program.read_bytes()}

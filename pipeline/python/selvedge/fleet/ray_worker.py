@@ -25,10 +25,10 @@ class Task(NamedTuple):
 
 
 def do_cell(task: Task, name: str, inputs: Mapping[str, Any], known: bytes | None):
-    """Does a cell. `inputs`: references to the bytes of the files that it needs, by their paths in the folder of inputs;
-    `known`: the cell.json of a result that is there already, which the program judges. Returns CellEnd as a plain tuple,
-    and the files of the result by their paths in it: None where they are in the shared folder, or where the known result
-    stands."""
+    """Does a cell. `inputs`: references to the bytes of the files that it needs, by their paths in the folder of
+    inputs; `known`: the cell.json of a result that is there already, which the program judges. Returns CellEnd as a
+    plain tuple, and the files of the result by their paths in it: None where they are in the shared folder, or where
+    the known result stands."""
     node = node_folder(task.run)
     program = _program_on_node(task, node)
     if task.shared:
