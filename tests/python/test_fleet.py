@@ -208,6 +208,48 @@ def test_a_known_result_stays_where_it_fits_and_is_replaced_where_not(tmp_path, 
     assert os.listdir(work.out / "cells") == ["a"]
 
 
+SHOTS = {
+    "scenes/sheet.yaml": """
+cloths:
+  - {name: sheet, rectangle: {size: [0.4, 0.4], edge: 10 cm}, translate: [0, 0.3, 0]}
+run: {frames: 3, fps: 30}
+""",
+    "work/shots.yaml": """
+cells: shots
+pages: false
+shots:
+  - {name: low, scene: ../scenes/sheet.yaml}
+  - {name: high, scene: ../scenes/sheet.yaml, set: ["cloths.sheet.translate=[0, 1, 0]"]}
+""",
+}
+
+
+def test_shots_by_the_program_itself_here_and_on_a_node_have_the_same_positions(tmp_path, node):
+    program = os.environ.get("SELVEDGE_PROGRAM")
+    if not program:
+        pytest.skip("SELVEDGE_PROGRAM is not set")
+    ray_worker.write_files(tmp_path, {path: text.encode() for path, text in SHOTS.items()})
+    file, out = tmp_path / "work" / "shots.yaml", tmp_path / "out"
+    result = fleet.run(file, out, program=program, progress=False)
+    assert sorted(result.done) == ["high", "low"] and not result.failed and not result.missing
+    assert "high" in result.gathered and "low" in result.gathered
+    listed = listing.list_cells(program, file)
+    files = {"selvedge": pathlib.Path(program).read_bytes()}
+    task = ray_worker.Task(uuid.uuid4().hex, "", "", files, listed.key, "work/shots.yaml", "")
+    hashes = set()
+    for cell in listed.cells:
+        inputs = {os.path.relpath(need, tmp_path): pathlib.Path(need).read_bytes() for need in cell.needs}
+        inputs["work/shots.yaml"] = file.read_bytes()
+        local = (out / "cells" / cell.name / "cell.json").read_bytes()
+        assert ray_worker.do_cell(task, cell.name, inputs, local) == ((cell.name, "done", ""), None)
+        end, made = ray_worker.do_cell(task, cell.name, inputs, None)
+        assert end == (cell.name, "done", "")
+        here, there = json.loads(local), json.loads(made["cell.json"])
+        assert here["positions_hash"] == there["positions_hash"] and here["key"] == there["key"]
+        hashes.add(here["positions_hash"])
+    assert len(hashes) == 2
+
+
 def test_the_python_of_the_page(tmp_path, monkeypatch, capsys):
     work = Work(tmp_path, [{"name": "good"}, {"name": "torn", "status": 1}])
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
