@@ -47,6 +47,8 @@ for minor in $(seq 10 30); do
   [[ -n "$one" ]] || continue
   "$one" -m venv "$folder/empty-3.$minor"
   "$folder/empty-3.$minor/bin/pip" -q install "$folder"/wheels/*.whl pytest tqdm
+  "$folder/empty-3.$minor/bin/pip" -q install "$(echo "$folder"/wheels/*.whl)[fleet]" ||
+    echo "test-wheel: Ray cannot be had: the tests of a cluster are skipped"
   SELVEDGE_PROGRAM="$program" "$folder/empty-3.$minor/bin/python" -m pytest -q -p no:cacheprovider tests/python
   tried+=("3.$minor")
 done

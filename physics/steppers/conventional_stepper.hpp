@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "collision/contact/resolve_options.hpp"
 #include "physics/scene/stepper.hpp"
@@ -30,7 +29,7 @@ struct ConventionalOptions {
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
   ResolveOptions resolve;
-  std::string name = "conventional";  // of the stepper, in reports
+  const char* name = "conventional";  // of the stepper, in reports
 };
 
 // The same options for one rough solve a frame and then the response to contact, as `run.quality: draft` solves.

@@ -24,7 +24,7 @@ target_link_options(_selvedge PRIVATE LINKER:--exclude-libs,ALL)
 set(package ${PROJECT_BINARY_DIR}/python/selvedge)
 set_target_properties(_selvedge PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${package})
 file(GLOB files CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/python/selvedge python/selvedge/*.py*
-  python/selvedge/py.typed)
+  python/selvedge/fleet/*.py python/selvedge/py.typed)
 foreach(file IN LISTS files)
   configure_file(python/selvedge/${file} ${package}/${file} COPYONLY)
 endforeach()
