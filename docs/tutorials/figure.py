@@ -1,6 +1,6 @@
-"""Stand-ins for files that a reader has: a T-shirt as OBJ, and a figure as a rigged GLB or in the layout of SMPL-X.
+"""Stand-ins for files that a reader has: a T-shirt as OBJ, and a figure as a rigged GLB.
 
-figure.py glb makes shirt.obj and figure.glb; figure.py smplx makes shirt.obj, SMPLX_TEST.npz and a clip, walk_test.npz.
+figure.py makes shirt.obj and figure.glb in the working folder.
 Surface and T-shirt are the program's own mannequin and garment, in the pose with the arms out, in metres. Weights are
 by the distance from the bones. Only the program and NumPy are needed.
 """
@@ -9,7 +9,6 @@ import json
 import pathlib
 import struct
 import subprocess
-import sys
 
 import numpy as np
 
@@ -117,10 +116,5 @@ def write_glb(file, x, triangles):
     file.write_bytes(head + text + struct.pack("<II", len(data), 0x004E4942) + data)
 
 
-def main():
-    x, triangles = make_surfaces()
-    if sys.argv[1] == "glb":
-        write_glb(pathlib.Path("figure.glb"), x, triangles)
-
-
-main()
+if __name__ == "__main__":
+    write_glb(pathlib.Path("figure.glb"), *make_surfaces())
