@@ -107,14 +107,13 @@ tidy:  ## clang-tidy over the sources of the release build
 	@$(MAKE) --no-print-directory build/release/configured
 	@git ls-files '*.cpp' ':!tests' | xargs -P $(JOBS) -n 1 clang-tidy -p build/release --quiet --warnings-as-errors='*'
 
-# Python of the build where it has one: it is the one that the extension was made for.
-TUTORIAL_PYTHON = $(firstword $(wildcard $(CURDIR)/build/release/venv/bin/python) /usr/bin/python3)
-tutorials: program  ## Every command and picture of docs/tutorials and docs/gallery.md, each page in an empty folder below out/tutorials
-	@cmake/install-packages.sh $(PACKAGES_release) tutorials
+tutorials: program  ## Every command and picture of docs/tutorials and docs/gallery.md, in empty folders below out/tutorials (PAGES=docs/tutorials/farm.md: only these)
+	@cmake/install-packages.sh $(PACKAGES_release)
 	@$(ADDED_release)
 	@! grep -q '^SELVEDGE_PYTHON:BOOL=ON' build/release/CMakeCache.txt || \
 	  cmake --build --preset release --parallel $(JOBS) --target _selvedge
-	@$(TUTORIAL_PYTHON) docs/tutorials/run.py $(PROGRAM) build/release/python $(PAGES)
+	@python=build/release/venv/bin/python; [ -x $$python ] || python=/usr/bin/python3; \
+	  $$python docs/tutorials/run.py $(PROGRAM) build/release/python $(PAGES)
 
 docs:  ## The site of docs/, with references of Python and C++: out/site
 	@cmake/install-packages.sh docs

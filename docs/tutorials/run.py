@@ -99,13 +99,13 @@ def take_picture(view, folder, target):
     target.write_bytes(packed.getvalue())
 
 
-def run_page(page, env):
-    folder = ROOT / "out/tutorials" / page.stem
+def run_page(page, folder, env):
+    """What came of the page, in words."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     text, printed = page.read_text(), ""
     for match in BLOCK.finditer(text):
-        block = match["text"]
+        block, line = match["text"], text.count("\n", 0, match.start()) + 1
         try:
             if match["picture"]:
                 take_picture(match["view"], folder, page.parent / match["picture"])
@@ -116,11 +116,11 @@ def run_page(page, env):
             elif match["kind"] != "sh":
                 raise ValueError(f"a block `{match['kind']}` without a title is not run")
             elif name := absent(block, env["PATH"]):
-                return f"skipped from its line {text.count(chr(10), 0, match.start()) + 1} on: there is no {name}"
+                return f"skipped from its line {line} on: there is no {name}"
             else:
                 printed = run_block(block, folder, env)
         except ValueError as error:
-            sys.exit(f"{page.relative_to(ROOT)}:{text.count(chr(10), 0, match.start()) + 1}: {error}")
+            sys.exit(f"{page}:{line}: {error}")
     return "as it says"
 
 
@@ -130,8 +130,9 @@ def main():
     tutorials = sorted((ROOT / "docs/tutorials").glob("*.md"))
     for page in pages or [*tutorials, ROOT / "docs/gallery.md"]:
         begun = time.monotonic()
-        verdict = run_page(page.resolve(), env)
+        verdict = run_page(page.resolve(), ROOT / "out/tutorials" / page.stem, env)
         print(f"{page.name:20} {time.monotonic() - begun:6.0f} s  {verdict}", flush=True)
 
 
-main()
+if __name__ == "__main__":
+    main()
