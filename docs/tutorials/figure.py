@@ -104,7 +104,8 @@ def write_glb(file, x, triangles):
         children = [child + 1 for child, parent in enumerate(parents) if parent == joint]
         node = {"name": name, "translation": (places[joint] - up).tolist()}
         nodes.append(node | ({"children": children} if children else {}))
-    skin = {"joints": list(range(1, len(nodes))), "inverseBindMatrices": add(inverse.reshape(-1, 16), 5126, "MAT4", "<f4")}
+    bound = add(inverse.reshape(-1, 16), 5126, "MAT4", "<f4")
+    skin = {"joints": list(range(1, len(nodes))), "inverseBindMatrices": bound}
     content = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}], "nodes": nodes, "skins": [skin],
         "meshes": [{"name": "figure", "primitives": [primitive]}], "accessors": accessors, "bufferViews": views,

@@ -3,9 +3,9 @@
 PACKAGE is the folder of the Python package. Each page is run in an empty folder, out/tutorials/NAME, in its own order:
 
 * A fenced block with a title is a file. It is written.
-* A block `sh` is run by bash, with the program on the path; $SELVEDGE is the folder of the sources. It must end with the
-  status that the page names (`# ends with status 1`), else with 0. Where the block says `# needs NAME`, and there is
-  neither a program nor a Python module of that name, the page ends there.
+* A block `sh` is run by bash, with the program on the path; $SELVEDGE is the folder of the sources. It must end with
+  the status that the page names (`# ends with status 1`), else with 0. Where the block says `# needs NAME`, and there
+  is neither a program nor a Python module of that name, the page ends there.
 * A block `text` has lines that the block before it printed. Only numbers may differ.
 * A picture `![what](NAME.jpg "view.html#frame=3")` is taken of that page of a run and stored where the link leads. A
   picture that looks as it did before stays as it is.

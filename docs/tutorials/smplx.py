@@ -74,6 +74,5 @@ def write_motion(file, frames=60, fps=30):
     )
 
 
-x, triangles = make_surfaces()
-write_body("SMPLX_TEST.npz", x, triangles)
+write_body("SMPLX_TEST.npz", *make_surfaces())
 write_motion("motion_test.npz")
