@@ -56,9 +56,9 @@ struct Trainer {
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
   std::unique_ptr<Teacher> teacher;  // null: no term of the objective needs one
-  RunInputs inputs;              // files of people, and a hash of the training world
-  TrainedOn trained_on;          // includes the runs whose weights it began with
-  std::vector<int> start_pairs;  // of the roll-outs begun by this process, where they are counted
+  RunInputs inputs;                  // files of people, and a hash of the training world
+  TrainedOn trained_on;              // includes the runs whose weights it began with
+  std::vector<int> start_pairs;      // of the roll-outs begun by this process, where they are counted
   // Memory that is used again:
   Tape tape;
   std::vector<Sample> samples;

@@ -239,9 +239,9 @@ void draw_performance(const TrainingWorld& world, const TrainingPerson& who, Ran
       static_cast<int>(drawn(body(request.body).clips, random, [](const TrainingClip& clip) { return clip.weight; }));
 }
 
-constexpr int many_pairs = 20;    // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
+constexpr int many_pairs = 20;  // of a start that counts as tangled (Grigorev et al. 2024, figure 5, has more)
 constexpr double least_noise = 1e-3, most_noise = 1e-2;  // of a start with strong noise [m]
-constexpr int most_attempts = 8;  // to find such a start
+constexpr int most_attempts = 8;                         // to find such a start
 
 }  // namespace
 
