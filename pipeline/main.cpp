@@ -11,6 +11,7 @@
 #include "collision/geometry/path_beside.hpp"
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/formats/hdf5_at_exit.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/library_message.hpp"
 #include "pipeline/host/process_threads.hpp"
@@ -80,6 +81,7 @@ int main(int argc, char** argv) {
   if (limited) std::cerr << "warning: " << *limited << "\n";
   set_up_threads(argv, limited.has_value());
   ignore_file_limit_signal();
+  h5::do_nothing_at_exit();
   CLI::App app{"selvedge: a garment simulator with audited contact", "selvedge"};
   app.set_version_flag("--version", std::string(program_version()));
   app.require_subcommand(1);

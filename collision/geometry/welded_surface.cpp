@@ -51,19 +51,22 @@ WeldedSurface joined_at(const Surface& surface, const std::vector<int>& kept, Di
   return result;
 }
 
-// Bars places at edges that joining gave more than two faces. True if it barred any.
-bool bar_crowded(const Surface& before, const std::vector<int>& kept, const Surface& after,
+// Bars a place at each edge that joining gave more than two faces: of its ends the one where vertices were joined.
+// True if it barred any.
+bool bar_crowded(const Surface& before, const std::vector<int>& kept, const WeldedSurface& after,
                  const std::vector<int>& places, std::vector<char>& barred) {
-  if (after.nonmanifold_edges == 0) return false;
-  const std::vector<int> had = face_counts(before), has = face_counts(after);
+  if (after.surface.nonmanifold_edges == 0) return false;
+  const std::vector<int> had = face_counts(before), has = face_counts(after.surface);
+  std::vector<char> done(has.size(), 0);
   bool found = false;
   for (std::size_t i = 0; i < kept.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const int now = has[after.triangle_edges(static_cast<Eigen::Index>(i), k)];
-      if (now <= 2 || now <= had[before.triangle_edges(kept[i], k)]) continue;
+      const int edge = after.surface.triangle_edges(static_cast<Eigen::Index>(i), k);
+      if (done[edge] || has[edge] <= 2 || has[edge] <= had[before.triangle_edges(kept[i], k)]) continue;
       for (const int v : {before.triangles(kept[i], k), before.triangles(kept[i], (k + 1) % 3)}) {
-        found = found || !barred[places[v]];
-        barred[places[v]] = 1;
+        if (done[edge] || after.joined[v] == v) continue;
+        barred[places[v]] = done[edge] = 1;
+        found = true;
       }
     }
   return found;
@@ -86,12 +89,12 @@ std::optional<WeldedSurface> welded_surface(const Surface& surface, const std::v
     DisjointSets sets(surface.vertex_count);
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
       while (end < edges.size() && edges[end].places == edges[begin].places) ++end;
-      for (std::size_t k = 0; k < 2 && end - begin == 2; ++k)
-        if (!barred[edges[begin].places[k]]) sets.join(edges[begin].vertices[k], edges[begin + 1].vertices[k]);
+      if (end - begin != 2 || barred[edges[begin].places[0]] || barred[edges[begin].places[1]]) continue;
+      for (std::size_t k = 0; k < 2; ++k) sets.join(edges[begin].vertices[k], edges[begin + 1].vertices[k]);
     }
     if (sets.count() == surface.vertex_count && std::ssize(kept) == surface.triangles.rows()) return {};
     WeldedSurface result = joined_at(surface, kept, sets);
-    if (!bar_crowded(surface, kept, result.surface, places, barred)) return result;
+    if (!bar_crowded(surface, kept, result, places, barred)) return result;
   }
 }
 

@@ -55,12 +55,13 @@ void parse_mtl(std::string_view text, std::vector<LookMaterial>& materials) {
   }
 }
 
-void read_materials(Mesh& mesh) {
+void read_materials(Mesh& mesh, MissingMtl missing) {
   if (mesh.look.materials.empty()) return;
   for (const auto& [folder, name] : mesh.material_files) {
     try {
       parse_mtl(read_text_file(path_below(folder, name, folder.string()), "material"), mesh.look.materials);
     } catch (const Error&) {
+      if (missing == MissingMtl::ignore) continue;
       mesh.warnings.push_back(
           fmt::format("the material file `{}` cannot be read from the mesh's folder {}: its colours and textures are "
                       "left out",

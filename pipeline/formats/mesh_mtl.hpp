@@ -12,9 +12,12 @@ namespace selvedge {
 // Other lines and other materials are passed over. Of a texture with an absolute path the file's name is kept.
 void parse_mtl(std::string_view text, std::vector<LookMaterial>&);
 
-// Reads the .mtl files that the mesh names, for its look. One that cannot be read, or does not lie below the mesh's
-// folder, is named in a warning; materials that no file describes keep their names alone.
-void read_materials(Mesh&);
+// What becomes of a .mtl file that cannot be read, or does not lie below the mesh's folder.
+enum class MissingMtl { warn, ignore };
+
+// Reads the .mtl files that the mesh names, for its look. Materials that no file describes keep their names alone. To
+// simulate needs no colours, so that scenes ignore what is missing; what writes looks names it in a warning.
+void read_materials(Mesh&, MissingMtl = MissingMtl::warn);
 
 std::string mtl_text(const std::vector<LookMaterial>&);
 

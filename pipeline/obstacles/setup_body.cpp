@@ -25,7 +25,6 @@
 #include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
-#include "pipeline/obstacles/perform_clip.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "collision/untangle/give_way.hpp"
 #include "pipeline/bodies/body.hpp"
@@ -70,6 +71,15 @@ Performance read_performance(const Config& body, const std::filesystem::path& fo
 // the old ones.
 Performance read_figure(const Config& body, const std::filesystem::path& folder);
 void perform(const Config& body, const std::filesystem::path& folder, Performance&);
+
+// The same for bodies and clips that are in no file. figure_of gives the body in its mean shape and zero pose. It turns
+// closed shells outwards; `what` names the body in warnings of that.
+Performance figure_of(BodyModel, const std::string& what);
+// Gives it a clip of its own joints, and the room of the `body` section. Throws Error at `what` for a clip that moves
+// the body absurdly far.
+void perform_clip(Clip, const Config& body, const Config& what, Performance&);
+// Names it, and places and moves it as its `obstacle` section says.
+void place_performance(const Config& obstacle, const std::string& name, Performance&);
 
 // Sets the number of garments that the body wears. The room between its parts grows with it, unless the body's section
 // gives the room.

@@ -11,12 +11,13 @@
 #include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/joint_regressor.hpp"
 #include "pipeline/config/config_text.hpp"
-#include "pipeline/obstacles/perform_clip.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/scene_nanobind.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/materials.hpp"
-#include "pipeline/scene/worn_mesh.hpp"
+#include "pipeline/scene/setup_cloth.hpp"
+#include "pipeline/scene/setup_garment.hpp"
 
 namespace selvedge {
 namespace {

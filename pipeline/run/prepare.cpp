@@ -7,8 +7,8 @@
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/garments/garment_rest.hpp"
 #include "pipeline/run/resume.hpp"
+#include "pipeline/run/run_folder.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
-#include "pipeline/run/run_scene.hpp"
 #include "pipeline/run/simulate.hpp"
 
 namespace selvedge {

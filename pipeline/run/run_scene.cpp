@@ -12,6 +12,7 @@
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/record_frame.hpp"
 #include "pipeline/run/resume.hpp"
+#include "pipeline/run/run_folder.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
@@ -109,11 +110,6 @@ void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder,
   }
 }
 
-// Those that a resumed run makes anew.
-void remove_made_of_frames(const std::filesystem::path& folder) {
-  for (const char* name : {"summary.json", "run.xdmf", "view.html"}) remove_file(folder / name);
-}
-
 void finish(RunSummary& summary, const StepReport& last, int frame) {
   const bool rejected = last.status == StepStatus::rejected && last.reason != Reason::stopped;
   summary.end = rejected ? RunEnd::rejected : frame < summary.frames_wanted ? RunEnd::interrupted : RunEnd::finished;
@@ -186,11 +182,6 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
 }
 
 }  // namespace
-
-void remove_results(const std::filesystem::path& folder) {
-  remove_made_of_frames(folder);
-  for (const char* name : {"checkpoint.h5", "run.h5"}) remove_file(folder / name);
-}
 
 RunSummary run_scene(const Setup& setup, const Start& start, Stepper& stepper, const RunRequest& request) {
   return run_from(&start, setup, stepper, request);

@@ -26,9 +26,6 @@ struct RunRequest {
 // another process is running into the folder.
 RunSummary run_scene(const Setup&, const Start&, Stepper&, const RunRequest&);
 
-// Removes the results of an earlier run from a folder, so that they are not taken for those of a run that fails.
-void remove_results(const std::filesystem::path& folder);
-
 // Continues from the checkpoint of an interrupted run in the folder. Throws the same, and what read_resumed does.
 RunSummary resume_scene(const Setup&, Stepper&, const RunRequest&);
 

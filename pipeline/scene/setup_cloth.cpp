@@ -10,11 +10,11 @@
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/massless.hpp"
 #include "pipeline/scene/materials.hpp"
+#include "pipeline/scene/setup_garment.hpp"
 #include "pipeline/scene/setup_seams.hpp"
 #include "pipeline/scene/setup_selection.hpp"
 #include "pipeline/scene/setup_sheet.hpp"
 #include "pipeline/scene/setup_start.hpp"
-#include "pipeline/scene/worn_mesh.hpp"
 
 namespace selvedge {
 namespace {

@@ -14,7 +14,6 @@
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
-#include "pipeline/scene/worn_mesh.hpp"
 
 namespace selvedge {
 namespace {
@@ -123,7 +122,7 @@ Garment dressed_as_worn(const Config& section, const std::string& name, const Me
 Garment read_dressed(const Config& section, const std::filesystem::path& file, const Performance& who,
                      std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
-  read_materials(mesh);
+  read_materials(mesh, MissingMtl::ignore);
   const Points as_read = mesh.x;
   mesh.x = read_unit(section["unit"]) * with_y_up(mesh.x, section["up"].text() == "z" ? Up::z : Up::y);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);

@@ -2,6 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/footing.hpp"
@@ -26,6 +29,12 @@ std::vector<Garment> read_garments(const Config& garment, const std::filesystem:
 // The garment of a cloth's section, or those of its outfit; `folder` is the scene file's, warnings are added.
 std::vector<std::shared_ptr<const Wearing>> read_wearings(const Config& cloth, const std::filesystem::path& folder,
                                                           const Performances&, std::vector<std::string>& warnings);
+
+// The mesh as a garment of the body that the `cloth` section names. It lies where the body wears it in its zero pose.
+// `pins`: vertices that stay with the body, ascending; absent: those that Dressing (garment_dressed.hpp) chooses.
+// Throws Error for a mesh that is not on the body.
+std::shared_ptr<const Wearing> wear_mesh(const Config& cloth, const std::string& name, const Mesh&,
+                                         const std::optional<std::vector<int>>& pins, const Performances&);
 
 // Its rest shape on the body, with its groups, before the body is placed.
 Mesh rest_mesh(const Wearing&);

@@ -96,7 +96,7 @@ Mesh read_sheet(const Config& section, const std::filesystem::path& folder) {
   if (const Config& shape = section["ribbon"]; shape.given) return read_ribbon(shape);
   if (const Config& shape = section["tshirt"]; shape.given) return read_tshirt(shape);
   Mesh mesh = read_mesh_section(section["mesh"], folder);
-  read_materials(mesh);
+  read_materials(mesh, MissingMtl::ignore);
   return mesh;
 }
 

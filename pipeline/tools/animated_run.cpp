@@ -118,7 +118,8 @@ class RunSurfaces {
     std::vector<int> rows(static_cast<std::size_t>(info().cloth_first_vertex[cloth + 1] - first_of(cloth)));
     std::iota(rows.begin(), rows.end(), first_of(cloth));
     std::set<int> others;
-    for (const int v : triangles_of(cloth).reshaped())
+    const Triangles triangles = triangles_of(cloth);
+    for (const int v : triangles.reshaped())
       if (v < first_of(cloth) || v >= info().cloth_first_vertex[cloth + 1]) others.insert(v);
     rows.insert(rows.end(), others.begin(), others.end());
     return rows;

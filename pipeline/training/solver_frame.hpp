@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <memory>
 
 #include "pipeline/training/rolling_state.hpp"
 
@@ -13,10 +13,6 @@ struct SolverFrame {
   double dt = 0;  // [s]
 };
 SolverFrame solver_frame(const RollingState&);
-
-// Lets the solver go on from a state of the scene over the frames, one after the other: bodies and skinned garments at
-// their ends. `forces` has acceleration and wind. Returns false if it rejects a step.
-bool simulate_frames(Stepper&, const Scene&, const Drive& forces, std::span<const SkinnedFrame> ends, State&);
 
 // What runs behind a network; null: nothing does. It parts tangled starts first. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_behind(const Scene&, BehindNetwork);

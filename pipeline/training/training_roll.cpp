@@ -12,7 +12,8 @@
 #include "physics/recovery/cut_out.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/training/hung_sheet.hpp"
-#include "pipeline/training/solver_frame.hpp"
+#include "pipeline/training/simulate_frames.hpp"
+#include "pipeline/training/teacher_step.hpp"
 
 namespace selvedge {
 namespace {

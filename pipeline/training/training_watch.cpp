@@ -9,6 +9,7 @@
 #include "learned/losses/cloth_losses.hpp"
 #include "learned/losses/volume_loss.hpp"
 #include "pipeline/measures/motion_measures.hpp"
+#include "pipeline/training/simulate_frames.hpp"
 
 namespace selvedge {
 namespace {

@@ -202,9 +202,9 @@ function makeFigure(run) {
     object.frustumCulled = false;
   });
 
-  // Edges are drawn where a triangle is more than a few pixels wide; `pixels`: of a metre.
+  // Edges are drawn where they leave something of a triangle to be seen; `pixels`: of a metre.
   const edge = edgeLength(run.metric);
-  function outline(pixels) { marks[2].material.opacity = pixels * edge > 6 ? 0.8 : 0; }
+  function outline(pixels) { marks[2].material.opacity = pixels * edge > 10 ? 0.8 : 0; }
 
   let drawn = -1;
   function moveTo(next) {

@@ -1,9 +1,9 @@
-// Colours. Cloths take front and back in turn; red is kept for intersections.
+// Colours. Cloths take front and back in turn; red is kept for intersections, and no front is as dark and as warm.
 
 const clothColours = [
   {front: "#4a7fb5", back: "#d9b26a"},
-  {front: "#c98a5a", back: "#6f93a8"},
-  {front: "#5d9c84", back: "#cdb9a2"},
+  {front: "#dcbd7e", back: "#6f93a8"},
+  {front: "#8cc4bd", back: "#b79a7a"},
   {front: "#8d76b3", back: "#c9c28a"},
 ];
 const energyColours = {

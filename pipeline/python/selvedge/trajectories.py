@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from ._selvedge import Error, Report, trajectory_contents, trajectory_frames
+from ._selvedge import Error, trajectory_contents, trajectory_frames
+
+if TYPE_CHECKING:  # the stub alone has it
+    from ._selvedge import Report
 
 Floats = npt.NDArray[np.float32]
 Path = str | os.PathLike[str]

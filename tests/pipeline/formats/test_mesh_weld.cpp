@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/surface.hpp"
 #include "tests/pipeline/fake_run.hpp"
@@ -13,6 +15,16 @@ using Catch::Matchers::Contains;
 namespace {
 
 constexpr int n = 5;  // vertices along a side of a panel
+
+// The square's corners with their diagonals turned, so that none cuts off a corner of the panel.
+Triangles without_ears(Triangles faces) {
+  for (const Eigen::Index t : {Eigen::Index(0), faces.rows() - 2}) {
+    const int a = faces(t, 0), c = faces(t, 1), b = faces(t, 2), d = faces(t + 1, 2);
+    faces.row(t) << a, c, d;
+    faces.row(t + 1) << a, d, b;
+  }
+  return faces;
+}
 
 // Square panels of side 1 with vertices of their own, each turned about its border x = 0 by an angle.
 Mesh book(const std::vector<double>& angles, double gap = 0) {
@@ -79,13 +91,33 @@ TEST_CASE("weld: what would not be a surface stays apart, and is counted", "[mes
   CHECK(weld(corner, "corner.obj").apart == 1);
   CHECK(surface_of(corner).component_count == 2);
   CHECK_THAT(corner.warnings.at(0), Contains("1 vertex at the place of another is not welded"));
-  // Two layers that lie on each other, as a flat shirt, are joined round the border and nowhere else.
-  Mesh flat = book({0, 0});
-  for (Eigen::Index t = flat.triangles.rows() / 2; t < flat.triangles.rows(); ++t)
-    std::swap(flat.triangles(t, 1), flat.triangles(t, 2));
-  CHECK(weld(flat, "flat.obj").joined == 4 * (n - 1));
-  CHECK(surface_of(flat).nonmanifold_edges == 0);
-  CHECK(is_closed(surface_of(flat)));
+}
+
+TEST_CASE("weld: two layers that lie on each other are joined round the border and nowhere else", "[mesh_weld]") {
+  // As a flat shirt has them: the second layer faces the other way.
+  const auto layers = [](const Triangles& faces) {
+    Mesh flat = book({0, 0});
+    const Eigen::Index count = faces.rows();
+    flat.triangles.topRows(count) = faces;
+    flat.triangles.bottomRows(count) = faces.array() + n * n;
+    for (Eigen::Index t = count; t < 2 * count; ++t) std::swap(flat.triangles(t, 1), flat.triangles(t, 2));
+    return flat;
+  };
+  Mesh whole = layers(without_ears(fake::grid_triangles(n)));
+  CHECK(weld(whole, "flat.obj").joined == 4 * (n - 1));
+  CHECK(surface_of(whole).nonmanifold_edges == 0);
+  CHECK(is_closed(surface_of(whole)));
+  // Where one face is a corner of the panel, its third edge runs from border to border: joined at both ends, in both
+  // layers, it would have four triangles. One end stays apart, with the two border edges there in each layer.
+  Mesh ears = layers(fake::grid_triangles(n));
+  const Welding done = weld(ears, "ears.obj");
+  CHECK(done.joined == 4 * (n - 1) - 2);
+  CHECK(done.apart == n * n - done.joined);
+  const Surface surface = surface_of(ears);
+  CHECK(surface.nonmanifold_edges == 0);
+  CHECK(surface.component_count == 1);
+  const std::vector<int> faces = face_counts(surface);
+  CHECK(std::count(faces.begin(), faces.end(), 1) == 2 * 2 * 2);
 }
 
 }  // namespace selvedge::test_mesh_weld

@@ -92,7 +92,7 @@ TEST_CASE("cases: a sheet with a sliver or with n-gons falls as without them", "
   CHECK(ngon.height == Approx(quads.height).margin(0.02));
   const Ran zero = run(*case_file("zero_area/scene.yaml"));
   CHECK(is_clean(zero.summary));
-  CHECK_THAT(warnings_of(zero.summary), Contains("vertices without mass follow"));
+  CHECK_THAT(warnings_of(zero.summary), Contains("1 vertex without mass follows"));
   CHECK(zero.height == Approx(run(*case_file("quads/scene.yaml"), {"run.frames=15"}).height).margin(0.02));
 }
 

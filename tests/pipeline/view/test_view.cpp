@@ -77,9 +77,9 @@ TEST_CASE("view: frames are left out evenly when a run is too large, never the f
     return 1 + std::count(list.begin(), list.end(), ',');
   };
   CHECK(drawn_count(60'000'000) == 90);
-  const auto half = drawn_count(view_data({run}, 60'000'000).size() / 2);
-  CHECK(half > 10);
-  CHECK(half < 90);
+  const auto some = drawn_count(40'000);
+  CHECK(some > 10);
+  CHECK(some < 90);
   CHECK(drawn_count(1) == 2);
 }
 
