@@ -12,6 +12,7 @@ namespace {
 constexpr double beyond_box = 0.25;     // beyond the body's box, of its diagonal
 constexpr double least_extent = 0.1;    // extent of a garment, of that diagonal
 constexpr double clearly_nearer = 1.5;  // how much farther off the second best is at least
+constexpr double deep = 0.05;           // inside the body, of the garment's extent
 constexpr Eigen::Index most_sampled = 256;
 
 double extent_of(const Points& x) { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
@@ -25,13 +26,14 @@ bool fits_box(const Points& x, const Points& body) {
 
 double off_body(const Points& x, const Points& body, const Points& normals) {
   const Eigen::Index step = 1 + (x.rows() - 1) / most_sampled;
+  const double size = extent_of(x);
   double distances = 0, inside = 0, count = 0;
   for (Eigen::Index v = 0; v < x.rows(); v += step, ++count) {
     Eigen::Index foot = 0;
     distances += std::sqrt((body.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&foot));
-    inside += (x.row(v) - body.row(foot)).dot(normals.row(foot)) < 0;
+    inside += (x.row(v) - body.row(foot)).dot(normals.row(foot)) < -deep * size;
   }
-  return distances / count / extent_of(x) + inside / count;
+  return distances / count / size + inside / count;
 }
 
 }  // namespace

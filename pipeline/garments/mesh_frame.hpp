@@ -22,7 +22,9 @@ std::string frame_text(const MeshFrame&);             // "cm, z up"
 // worn_part.hpp, not beyond the body's box enlarged by a quarter of its diagonal, and no smaller than a tenth of that.
 struct FrameFit {
   MeshFrame frame;
-  double off = 0;  // mean distance of vertices from the body over the garment's own extent, and the share inside of it
+  // Mean distance of vertices from the body over the garment's own extent, and the share deeper inside of it than a
+  // twentieth of that: less is a garment that clips through the body where it is meant to lie.
+  double off = 0;
 };
 
 // Those that fit, the best first, of the units m, dm, cm, mm, in and both axes, or of what is given alone. `body` is in

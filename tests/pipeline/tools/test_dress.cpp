@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <numbers>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
@@ -114,7 +116,8 @@ TEST_CASE("A mesh whose vertices are there several times is welded, and keeps it
   const DressReport apart = dress(request);
   CHECK(apart.components == piece.triangles.rows());
   REQUIRE(apart.warnings.size() == 1);
-  CHECK_THAT(apart.warnings[0], Contains("--weld joins them"));
+  const Eigen::Index more = piece.triangles.size() - piece.x.rows();
+  CHECK(apart.warnings[0] == "the seams are not welded: --weld joins " + std::to_string(more) + " vertices");
 }
 
 TEST_CASE("A mesh in a pose and shape comes back there to a nanometre, and rests there", "[dress]") {
@@ -168,6 +171,8 @@ TEST_CASE("A mesh on a body in a clip's pose", "[dress]") {
   // The body's own surface there: found by dressing nothing else than itself.
   fake::Piece piece = fake::trunk(body, -0.05, 0.3, 0);
   request.mesh = write_grouped(folder, piece);
+  request.unit = "m";
+  request.up = Up::y;
   const BodyPose pose = dress(request).garment.made_in;
   CHECK(pose.rotations.rows() == 24);
   CHECK(pose.translation.y() > 0.3);
@@ -196,12 +201,13 @@ TEST_CASE("What a garment crosses is counted", "[dress]") {
   DressRequest request;
   request.mesh = write_grouped(folder, piece);
   request.out = folder.path / "band.h5";
+  request.unit = "m";
+  request.up = Up::y;
   const DressReport report = dress(request);
   CHECK_FALSE(is_clean(report));
   CHECK(report.inside_vertices == piece.x.rows());
   CHECK(std::filesystem::exists(request.out));
   write_grouped(folder, piece, 100);  // in cm, taken for m
-  request.unit = "m";
   const DressReport huge = dress(request);
   REQUIRE(huge.warnings.size() == 1);
   CHECK_THAT(huge.warnings[0], Contains("--unit cm --up y would put it there"));
@@ -238,6 +244,25 @@ TEST_CASE("Unit and axis are guessed from the body, and said", "[dress]") {
   const DressReport nowhere = dress(request);
   CHECK_FALSE(is_clean(nowhere));
   CHECK_THAT(nowhere.frame_reason, Contains("in no unit"));
+}
+
+TEST_CASE("A mesh that lies on the body equally well in two ways is refused, with the cure", "[dress]") {
+  const Folder folder("dress_ambiguous");
+  // A tube along x through the middle of the hips is the same tube with either axis up.
+  fake::Piece tube = fake::skirt(fake::mannequin(), -0.35, 0.1, 0.02, 24, 6);
+  for (int v = 0; v < tube.x.rows(); ++v) {
+    const double angle = std::numbers::pi / 12 * (v % 24);
+    tube.x.row(v) << 0.08 * (v / 24) - 0.2, 0.18 * std::cos(angle), 0.18 * std::sin(angle);
+  }
+  DressRequest request;
+  request.mesh = write_grouped(folder, tube);
+  request.out = folder.path / "tube.h5";
+  CHECK_THROWS_WITH(dress(request), Contains("m, y up") && Contains("m, z up") && Contains("--unit and --up"));
+  CHECK_FALSE(std::filesystem::exists(request.out));
+  request.unit = "m";
+  CHECK_THROWS_WITH(dress(request), Contains("m, y up") && Contains("m, z up"));
+  request.up = Up::z;
+  CHECK(dress(request).frame_reason.empty());
 }
 
 TEST_CASE("A mesh whose seams are not welded is told how many vertices --weld joins", "[dress]") {
