@@ -19,8 +19,8 @@ std::optional<std::array<int, 3>> placed_corners(const Triangles&, int triangle,
 
 // `places`: of each vertex the lowest one at its place (same_places.hpp). Faces are joined along an edge only where
 // exactly two meet. Where an edge would have more than two faces all the same, as a flap that is a single face has on
-// the face that it lies on, an end of it stays apart, with the edges there. Faces whose corners lie at fewer than three places are left
-// out, and so are those that repeat a face. Absent where nothing was joined.
+// the face that it lies on, an end of it stays apart, with the edges there. Faces whose corners lie at fewer than three
+// places are left out, and so are those that repeat a face. Absent where nothing was joined.
 std::optional<WeldedSurface> welded_surface(const Surface&, const std::vector<int>& places);
 
 // Moves each vertex to the vertex that stands for it. `joined` may be empty.

@@ -136,12 +136,12 @@ void bind_runs(nb::module_& module) {
              "scene: the file that the run was made of (config.yaml beside it); body: an obstacle's name (the first "
              "body); regions: a file of the body's vertices by name (its joints); frame: the last; reach: what is "
              "nearer touches the skin [m] (twice the contact thickness); out: a page to write.");
-  module.def("dataset", &dataset_of, "config"_a, "out"_a = nb::none(), "overrides"_a = Texts{}, "log"_a = print,
+  module.def("dataset", &dataset_of, "config"_a, "out"_a = nb::none(), "overrides"_a = Texts{}, "log"_a.none() = print,
              "Makes drapes at rest to train a network on, as the command does, in the folder out (out/data/NAME). log: "
              "called with a line for each path; None: silent. Ctrl-C keeps the paths that are done; the same call goes "
              "on. Returns what `selvedge dataset --json` prints, a dict.");
   module.def("train", &train_of, "config"_a, "out"_a = nb::none(), "overrides"_a = Texts{}, "resume"_a = false,
-             "log"_a = print,
+             "log"_a.none() = print,
              "Trains a network, as the command does, in the folder out (out/training/NAME). resume: from the folder's "
              "checkpoint. log: called with a line now and then; None: silent. Ctrl-C ends it at a checkpoint. Returns "
              "what `selvedge train --json` prints, a dict.");
@@ -150,7 +150,7 @@ void bind_runs(nb::module_& module) {
              "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "
              "What is finished is kept in the folder out, by the file's settings: empty it when a class has changed. "
              "Returns what compare.json holds, and table, a text.");
-  module.def("export_run", &export_run, "run"_a, "format"_a, "out"_a, "obstacles"_a, "progress"_a,
+  module.def("export_run", &export_run, "run"_a, "format"_a, "out"_a, "obstacles"_a, "progress"_a.none(),
              "What selvedge.export calls. progress: called with the frames that were read and their number; or None.");
   module.def("page_of", &page_of, "runs"_a, "limit"_a, "The page that selvedge.view shows, as HTML.");
 }

@@ -86,7 +86,7 @@ def test_mistakes_say_what_and_where():
 
     refused(["garment `g`", "no body"], scene.add_garment, *sleeve, name="g")
     body = scene.add_body
-    far = {"poses": np.zeros((2, 2, 3)), "translations": [[0, 0, 0], [0, 1e5, 0]]}
+    far = {"poses": np.zeros((2, 2, 3)), "translations": [[0, 0, 0], [0, 1e7, 0]]}
     uneven = {"poses": np.zeros((4, 2, 3)), "translations": np.zeros((3, 3))}
     refused(["body `b`, weights", "158 x 2"], body, x, triangles, joints, weights[:5], parents, name="b")
     refused(["weights", "sums to"], body, x, triangles, joints, 0.9 * weights, parents)
