@@ -95,7 +95,7 @@ def test_mistakes_say_what_and_where():
     refused(["poses", "frames x joints x 3"], body, x, triangles, joints, weights, parents, poses=np.zeros((4, 3, 3)))
     refused(["poses", "(4, 2)"], body, x, triangles, joints, weights, parents, poses=np.zeros((4, 2)))
     refused(["translations", "3 rows for 4"], body, x, triangles, joints, weights, parents, **uneven)
-    refused(["absurdly far", "frame 1"], body, x, triangles, joints, weights, parents, **far)
+    refused(["translations", "row 1"], body, x, triangles, joints, weights, parents, **far)
     refused(["fps", "is 0"], body, x, triangles, joints, weights, parents, poses=np.zeros((4, 2, 3)), fps=0)
     refused(["`translat`", "translate"], body, x, triangles, joints, weights, parents, translat=[0, 0, 0])
     refused(["without poses"], body, x, triangles, joints, weights, parents, translations=[[0, 0, 0]])

@@ -106,7 +106,7 @@ def test_a_recorded_run_is_that_of_the_program(run, scene_file, tmp_path):
 
 def test_export_writes_files_and_says_how_far_it_is(run, tmp_path, capsys):
     files = selvedge.export(run, "obj", tmp_path / "meshes", obstacles=True)
-    assert len(files) == 27 and all(file.exists() for file in files)
+    assert len(files) == 19 and all(file.exists() for file in files)
     assert capsys.readouterr().err == ""  # nobody looks
     (glb,) = selvedge.export(run, "glb", tmp_path / "meshes", progress=False)
     assert glb.read_bytes()[:4] == b"glTF"
