@@ -104,7 +104,7 @@ def test_mistakes_say_what_and_where():
     refused(["`lim`", "limb"], scene.add_garment, *sleeve, on="lim")
     refused(["pins", "vertex 60"], scene.add_garment, *sleeve, pins=[60])
     refused(["fit", "tigth"], scene.add_garment, *sleeve, fit="tigth")
-    refused(["`from`", "drapd"], scene.add_garment, *sleeve, start={"from": "drapd"})
+    refused(["start.from", "drapd", "draped"], scene.add_garment, *sleeve, start={"from": "drapd"})
 
 
 def test_materials_are_those_of_scene_files(tmp_path):
