@@ -152,21 +152,21 @@ def _write(file: str | os.PathLike[str], meshes: list[_Written], fps: float) -> 
             for k, frame in enumerate(one.frames):
                 positions = V3fArrayFromBuffer(frame)  # a sample points into it
                 sample = AbcGeom.OPolyMeshSchemaSample(positions, corners, counts)
-                if k == 0 and one.uv is not None:
-                    sample.setUVs(_uv_sample(AbcGeom, one))
+                if k == 0 and one.uv is not None and one.uv_rows is not None:
+                    sample.setUVs(_uv_sample(AbcGeom, one.uv, one.uv_rows))
                 schema.set(sample)
             del schema, mesh, above
         del archive  # the library writes the file's end when the last of them goes
         os.replace(growing, path)
 
 
-def _uv_sample(AbcGeom, mesh: _Written):
+def _uv_sample(AbcGeom, uv: np.ndarray, uv_rows: np.ndarray):
     from imath import UnsignedIntArray, V2fArrayFromBuffer
 
-    rows = UnsignedIntArray(len(mesh.uv_rows))
-    for k, row in enumerate(mesh.uv_rows.tolist()):
+    rows = UnsignedIntArray(len(uv_rows))
+    for k, row in enumerate(uv_rows.tolist()):
         rows[k] = row
-    return AbcGeom.OV2fGeomParamSample(V2fArrayFromBuffer(mesh.uv), rows, AbcGeom.GeometryScope.kFacevaryingScope)
+    return AbcGeom.OV2fGeomParamSample(V2fArrayFromBuffer(uv), rows, AbcGeom.GeometryScope.kFacevaryingScope)
 
 
 def _frames(x) -> list[np.ndarray]:

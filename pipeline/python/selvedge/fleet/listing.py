@@ -10,7 +10,7 @@ import subprocess
 from typing import NamedTuple
 
 try:
-    from .._selvedge import Error
+    from .._selvedge import Error as Error
 except ImportError:  # the extension is not built, and nothing here needs it
     Error = ValueError
 

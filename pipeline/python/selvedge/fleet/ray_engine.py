@@ -117,6 +117,7 @@ def _library():
     try:
         import ray
         import ray.cloudpickle
+        import ray.exceptions
         import ray.util.scheduling_strategies
     except ImportError as why:
         raise Error(f"engine ray: Ray cannot be imported ({why}); pip install selvedge-cloth[fleet]") from why
