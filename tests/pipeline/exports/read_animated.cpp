@@ -256,7 +256,8 @@ std::map<std::string, Surface> usda(const std::filesystem::path& path) {
       surface->corners = ints(after(line));
       const std::vector<double> corners = numbers(after(line));
       surface->triangles.resize(corners.size() / 3, 3);
-      for (std::size_t i = 0; i < corners.size(); ++i) surface->triangles.data()[i] = static_cast<int>(corners[i]);
+      for (Eigen::Index i = 0; i < surface->triangles.size(); ++i)  // of polygons they mean nothing
+        surface->triangles.data()[i] = static_cast<int>(corners[static_cast<std::size_t>(i)]);
     }
     if (line.find("point3f[] points = ") != std::string::npos) {
       surface->times.push_back(0);
