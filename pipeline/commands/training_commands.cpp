@@ -28,9 +28,10 @@ std::string name_of_run(const TrainArguments& arguments) {
 
 RunCommand dataset_command(CLI::App& command) {
   const auto request = std::make_shared<DatasetRequest>();
-  command.add_option("config", request->config, "data file (YAML), see docs/repulsion.md")->required();
+  command.add_option("config", request->config, "file that describes the drapes (YAML), see docs/repulsion.md")
+      ->required();
   add_overrides(command, request->overrides, "the file\'s");
-  command.add_option("--out", request->out, "folder for the drapes (out/data/NAME)");
+  command.add_option("--out", request->out, "folder for the drapes; default: out/data/NAME");
   return [request](bool json) {
     const InterruptWatch watch;
     const DatasetSummary summary = make_dataset(followed(*request));
@@ -43,8 +44,8 @@ RunCommand train_command(CLI::App& command) {
   const auto arguments = std::make_shared<TrainArguments>();
   command.add_option("config", arguments->config, "training file (YAML), see docs/training.md")->required();
   add_overrides(command, arguments->overrides, "the file\'s");
-  command.add_option("--out", arguments->out, "folder for weights, checkpoint and tables (out/training/NAME)");
-  command.add_flag("--resume", arguments->resume, "go on from the folder's checkpoint");
+  command.add_option("--out", arguments->out, "folder for weights, checkpoint and tables; default: out/training/NAME");
+  command.add_flag("--resume", arguments->resume, "continue from the checkpoint in the folder");
   command.add_flag("--pause", arguments->pause, "ask the run in the folder to stop at a checkpoint");
   return [arguments](bool json) {
     if (arguments->pause) {
