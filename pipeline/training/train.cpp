@@ -88,7 +88,8 @@ std::string measure_text(const TrainingMeasure& m) {
   const RollMeasure& r = m.roll;
   if (!r.finite) return fmt::format("step {}: the measuring roll-out is not finite after {} frames", m.step, r.frames);
   return fmt::format(
-      "step {}: gap closed {:.3f} worn, {:.3f} minimised; roll-out of {} frames: objective {:.4g} J, strain {:.2f} % "
+      "step {}: gap closed {:.3f} (skinned), {:.3f} (minimised); roll-out of {} frames: objective {:.4g} J, strain "
+      "{:.2f} % "
       "(99 %: {:.1f} %), {:.2f} % of the vertices deep in the body, {:.0f} pairs at the end",
       m.step, m.skinned.closed, m.minimised.closed, r.frames, r.energy, 100 * r.strain, 100 * r.strain_99, 100 * r.deep,
       static_cast<double>(r.pairs_at_end));

@@ -68,7 +68,7 @@ TEST_CASE("trained on: what is held out is not trained on, and compared on", "[t
   weights.trained_on = trained_on_json(later);
   write_weight_file(request.out / "weights.h5", weights);
   CHECK(
-      has(comparison("own.yaml", "test").second, "warning: row `own`: weights.h5 began with weights that do not say"));
+      has(comparison("own.yaml", "test").second, "warning: row `own`: weights.h5 began with weights that have no record"));
 }
 
 TEST_CASE("trained on: it is known by content", "[training]") {
