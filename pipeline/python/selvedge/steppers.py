@@ -46,7 +46,7 @@ class StepDrive:
 class Stepper:
     """A stepper. An instance is made for each scene; arrays that it is given are copies of its own.
 
-    Its states are audited as those of any other stepper, and pins are put at the positions of the drive, whatever `step`
+    Its states are audited as those of any other stepper. Pins are put at the positions of the drive, whatever `step`
     returns. It keeps its memory in itself, so that a run of it cannot be resumed.
     """
 

@@ -48,8 +48,8 @@ def run(
     travel.
 
     Results of this program and these settings are kept. Raises Error if the file, the program or an argument is bad; a
-    cell that is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running and raises
-    KeyboardInterrupt; the same call then continues."""
+    cell that is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running and
+    raises KeyboardInterrupt; the same call then continues."""
     begun = time.monotonic()
     _check(engine, workers, retries)
     listing = list_cells(find_program(program), file)

@@ -45,7 +45,7 @@ def start_cell(program: str, key: str, file: str, name: str, out: str) -> subpro
 
 
 def _set_up_child():
-    """Run by the child before it becomes the program: unblocks SIGINT, which workers of Ray and shells in the background
+    """Run by the child before it becomes the program: unblocks SIGINT, which workers of Ray and background shells
     block, and lets the system kill it when the thread that started it ends."""
     die = None
     if sys.platform == "linux":

@@ -1,4 +1,4 @@
-"""Functions of a worker of a Ray cluster. The driver sends them along, so that a node needs Ray and not this package."""
+"""Functions of a worker of a Ray cluster. The driver sends them along, so that a node needs Ray alone."""
 
 from __future__ import annotations
 
