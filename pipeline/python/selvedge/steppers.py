@@ -53,7 +53,7 @@ class Stepper:
     needs_worn = False  # a scene must have cloth that a body wears
     needs_obstacles = False
     may_leave_out_cloths = False  # True: a step of some cloths alone gives them the same motion
-    # Forces of a scene that it does not model, so that a run shows no energy of theirs: "membrane", "bending (curvature)",
+    # Forces that it does not model, so that a run shows no energy of theirs: "membrane", "bending (curvature)",
     # "bending (hinge)", "springs", "stiffness damping", "mass damping", "wind".
     ignores: tuple[str, ...] = ()
 
