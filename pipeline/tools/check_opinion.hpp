@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// A pair of triangles that only one of the two finds to intersect. In pairs with a body, `second` counts through the triangles
-// of all bodies.
+// A pair of triangles that only one of the two finds to intersect. In pairs with a body, `second` counts through the
+// triangles of all bodies.
 struct Disagreement {
   int frame = 0;
   int first = 0, second = 0;
@@ -27,7 +27,7 @@ struct Opinion {
   int beyond_rounding = 0;  // number of disagreements with `beyond`
 };
 
-// Adds FCL's result for one frame beside that of the audit. Frames must be finite. Throws Error if the build has no FCL.
+// Adds FCL's result for one frame. Frames must be finite. Throws Error if the build has no FCL.
 void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies, const Audit& ours, int frame,
                  Opinion&);
 

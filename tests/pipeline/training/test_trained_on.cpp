@@ -67,8 +67,8 @@ TEST_CASE("trained on: what is held out is not trained on, and compared on", "[t
   add_earlier("", "earlier", later);
   weights.trained_on = trained_on_json(later);
   write_weight_file(request.out / "weights.h5", weights);
-  CHECK(
-      has(comparison("own.yaml", "test").second, "warning: row `own`: weights.h5 began with weights that have no record"));
+  CHECK(has(comparison("own.yaml", "test").second,
+            "warning: row `own`: weights.h5 began with weights that have no record"));
 }
 
 TEST_CASE("trained on: it is known by content", "[training]") {
