@@ -9,7 +9,7 @@ CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
 SOURCES = git ls-files '*.cpp' '*.hpp'
 PROGRAM := build/release/selvedge
 
-PACKAGES_release := build suitesparse fcl viewer plots test python
+PACKAGES_release := build suitesparse fcl viewer test python
 ADDED_release := cmake/add-python.sh build/release
 PACKAGES_dev := $(PACKAGES_release)
 PACKAGES_asan := $(PACKAGES_release)
@@ -36,7 +36,6 @@ demo: program  ## Build the program, simulate configs/demo.yaml by three stepper
 	@$(PROGRAM) view out/demo/conventional out/demo/learned out/demo/hybrid --out out/demo/view.html
 
 validate: program  ## Physics with known answers: a table and plots, and out/validate/*
-	@cmake/install-packages.sh plots
 	@$(PROGRAM) validate --out out/validate
 
 bench: program  ## Run the benchmark family: a table, and out/bench/*.json
@@ -56,7 +55,6 @@ wardrobe: program  ## Every garment by code through every clip: a table, and out
 	@$(PROGRAM) gather $(WARDROBE) --out out/wardrobe
 
 compare: program  ## Compare the conventional stepper's settings: tables and plots of error against run time, and out/compare/*
-	@cmake/install-packages.sh plots
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)

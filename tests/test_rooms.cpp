@@ -50,6 +50,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
     {"pipeline",
      {{"host"},
       {"config"},
+      {"plots", {"host"}},
       {"reports", {"host"}},
       {"formats"},
       {"exports"},

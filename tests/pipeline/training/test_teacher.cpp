@@ -7,7 +7,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/search/intersections.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
