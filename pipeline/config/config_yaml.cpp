@@ -208,7 +208,7 @@ Config read_section(const std::string& yaml, const Section& section, const std::
 
 std::map<std::string, std::string> top_keys(const std::filesystem::path& file, const std::string& noun) {
   const YAML::Node root = loaded(read_text_file(file, noun), file.string());
-  if (!root.IsMap()) throw Error("is not a list of `key: value`", file.string(), "write one for each key");
+  if (!root.IsMap()) throw Error("is not a list of `key: value`", file.string(), "write each key on a line of its own");
   std::map<std::string, std::string> keys;
   for (const auto& pair : root)
     if (pair.first.IsScalar()) keys[pair.first.Scalar()] = pair.second.IsScalar() ? pair.second.Scalar() : "";
