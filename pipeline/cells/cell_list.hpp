@@ -74,7 +74,7 @@ void number_equal_names(std::vector<std::string>& names);
 std::size_t number_of(const CellList&, const std::string& name);
 
 // Time that frames of so many vertices take, roughly, on one core [s].
-double rough_seconds(int vertices, int frames);
+double rough_seconds(int vertices, double frames);
 
 std::string cell_record_json(const CellRecord&);
 // Absent if the text is not a record.

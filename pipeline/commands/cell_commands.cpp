@@ -30,7 +30,8 @@ constexpr const char* about_file = "work file, comparison, stability suite or da
 int list_cells(const CellsArguments& arguments, bool json) {
   const CellList list = read_cells(arguments.file);
   if (arguments.names) {
-    for (const std::string& name : list.names) std::cout << name << "\n";
+    if (json) std::cout << cell_names_json(list);
+    for (const std::string& name : list.names) people(json) << name << "\n";
     return 0;
   }
   std::vector<WorkCell> cells;

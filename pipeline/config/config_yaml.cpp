@@ -206,6 +206,15 @@ Config read_section(const std::string& yaml, const Section& section, const std::
   return checked_section(root, section, "", where, origin);
 }
 
+std::map<std::string, std::string> top_keys(const std::filesystem::path& file, const std::string& noun) {
+  const YAML::Node root = loaded(read_text_file(file, noun), file.string());
+  if (!root.IsMap()) throw Error("is not a list of `key: value`", file.string(), "write each key on a line of its own");
+  std::map<std::string, std::string> keys;
+  for (const auto& pair : root)
+    if (pair.first.IsScalar()) keys[pair.first.Scalar()] = pair.second.IsScalar() ? pair.second.Scalar() : "";
+  return keys;
+}
+
 std::string quoted_yaml(const std::string& text) {
   YAML::Emitter out;
   out << YAML::DoubleQuoted << text;

@@ -211,13 +211,8 @@ CellList stability_cells(const StabilityRequest& request) {
     return run_cell(*work, k, folder, watch);
   };
   list.gather = [](const std::vector<CellRecord>& records, const std::filesystem::path& out) {
-    std::vector<StabilityRow> rows;
-    for (const CellRecord& record : records)
-      if (const std::optional<StabilityRow> row = read_stability_row(record.result.row)) {
-        rows.push_back(*row);
-        show_run(out, record.cell);
-      }
-    return write_tables(out, rows);
+    const auto show = [&](const StabilityRow&, const std::string& cell) { show_run(out, cell); };
+    return write_tables(out, cell_rows(records, read_stability_row, show));
   };
   return list;
 }

@@ -6,12 +6,12 @@
 #include "pipeline/cells/shot_cells.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/config/config_tables.hpp"
+#include "pipeline/config/config_text.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/suites/stability.hpp"
 #include "pipeline/suites/stress.hpp"
 #include "pipeline/suites/wardrobe.hpp"
-#include "pipeline/suites/work_keys.hpp"
 
 namespace selvedge {
 namespace {
@@ -177,24 +177,25 @@ CellList read_work_file(const std::filesystem::path& file, const std::string& ki
 }
 
 CellList read_by_keys(const std::filesystem::path& file) {
-  const WorkKeys keys = work_keys(file);
-  if (keys.has("cells")) return read_work_file(file, keys.cells);
-  if (keys.has("settings")) {
+  const auto keys = top_keys(file, "work");
+  const auto has = [&](const char* name) { return keys.contains(name); };
+  if (has("cells")) return read_work_file(file, keys.at("cells"));
+  if (has("settings")) {
     CompareRequest request;
     request.file = file;
     return compare_cells(request);
   }
-  if (keys.has("cases")) {
+  if (has("cases")) {
     StabilityRequest request;
     request.suite = file;
     return stability_cells(request);
   }
-  if (keys.has("poses") || keys.has("garment")) {
+  if (has("poses") || has("garment")) {
     DatasetRequest request;
     request.config = file;
     return dataset_cells(request);
   }
-  const bool scene = keys.has("cloths");
+  const bool scene = has("cloths");
   throw Error(scene ? "is a scene, which is one run" : "is no list of cells", file.string(),
               scene ? "name it in a work file that begins with `cells: shots`, or `selvedge simulate` it"
                     : "give a work file (`cells: shots`), a comparison (`settings`), a stability suite (`cases`) or a "

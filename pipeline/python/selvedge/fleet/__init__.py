@@ -47,14 +47,17 @@ def run(
     starts one here. shared: the file, all that cells need, and `out` have the same paths on every node; otherwise files
     travel.
 
-    Results of this program and these settings are kept. Raises Error if the file, the program or an argument is bad; a
-    cell that is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running and
-    raises KeyboardInterrupt; the same call then continues."""
+    Results of this program and these settings are kept. Raises Error if the file, the program, the folder or an argument
+    is bad; a cell that is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running
+    and raises KeyboardInterrupt; the same call then continues."""
     begun = time.monotonic()
     _check(engine, workers, retries)
     listing = list_cells(find_program(program), file)
     folder = pathlib.Path(out).absolute()
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as why:
+        raise Error(f"{folder}: cannot make this folder ({why.strerror})\n  cure: give another out") from why
     said = Progress(listing.cells, {c.name for c in listing.cells if result_folder(folder, c.name).is_dir()}, progress)
     ends = _do_all(listing, _engine(engine, listing, str(folder), workers, address, shared), retries, said)
     by_state = {state: {e.name: e.message for e in ends if e.state == state} for state in ("done", "failed")}
