@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/contact/contact_pairs.hpp"
 #include "collision/contour/find_contours.hpp"
 #include "collision/untangle/caught.hpp"
 #include "collision/untangle/find_exemption.hpp"
@@ -114,15 +115,35 @@ int iterations_for(const ContactWorld& world, const Points& nodes, double reach,
   return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
 }
 
-// Moves vertices that would newly go through an obstacle back to `from`. Returns what is tangled then.
+// 1 for cloth vertices of pairs with an obstacle that meet in the motion x0 -> x1 and were clean before.
+std::vector<char> meeting_obstacles(const ContactWorld& world, const Exemption& before, const Points& x0,
+                                    const Points& x1) {
+  ContactWorld bodies = world;
+  bodies.self = false;
+  PairSearch search(bodies);
+  search.leave_out(&before);
+  std::vector<NodePair> pairs;
+  search.find(x0, x1, 0, pairs);
+  std::vector<char> meeting(world.cloth->vertex_count, 0);
+  for (const NodePair& pair : pairs) {
+    if (!time_of_contact(pair.kind, corners(pair, x0), corners(pair, x1), 0)) continue;
+    for (const int node : pair.nodes)
+      if (world.is_cloth(node)) meeting[node] = 1;
+  }
+  return meeting;
+}
+
+// Moves vertices that would newly go through an obstacle, in the motion or at its end, back to `from`. Returns what is
+// tangled then.
 Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
   for (;;) {
+    const std::vector<char> meeting = meeting_obstacles(world, before, from, nodes);
     Exemption left = find_exemption(world, nodes);
     bool stopped = false;
-    for (std::size_t v = 0; v < left.body.size(); ++v) {
-      const auto at = static_cast<Eigen::Index>(v);
-      if (!left.body[v] || (!before.body.empty() && before.body[v]) || nodes.row(at) == from.row(at)) continue;
-      nodes.row(at) = from.row(at);
+    for (Eigen::Index v = 0; v < std::ssize(meeting); ++v) {
+      const bool tangled = !left.body.empty() && left.body[v] && (before.body.empty() || !before.body[v]);
+      if ((!tangled && !meeting[v]) || nodes.row(v) == from.row(v)) continue;
+      nodes.row(v) = from.row(v);
       stopped = true;
     }
     if (!stopped) return left;
@@ -174,7 +195,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     drop_let_through(options.let_through, separations);
     Points moved = nodes;
     moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, separations, wanted, reach);
-    Exemption left = stop_at_obstacles(world, before, from, moved);
+    Exemption left = stop_at_obstacles(world, before, nodes, moved);
     if (before.self.empty() ? !left.self.empty() : pairs_within_cloth(world, moved) > pairs) continue;
     nodes = std::move(moved);
     recovery = {std::move(left), std::move(separations), parted.moved == 0, trapped};
