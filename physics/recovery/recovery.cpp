@@ -11,6 +11,7 @@
 #include "collision/untangle/untangle.hpp"
 #include "collision/untangle/world_sheets.hpp"
 #include "physics/recovery/balanced_motion.hpp"
+#include "physics/recovery/lifted_off.hpp"
 
 namespace selvedge {
 namespace {
@@ -94,6 +95,20 @@ std::vector<Separation> pushes_along(const Points& wanted, const std::vector<cha
     pushes.push_back(push);
   }
   return pushes;
+}
+
+// The pushes of vertices that are lifted off an obstacle, by at most `reach` [m].
+void add_lifts(const Points& lifts, double reach, std::vector<Separation>& pushes) {
+  for (int v = 0; v < lifts.rows(); ++v) {
+    const double length = row(lifts, v).norm();
+    if (length == 0) continue;
+    Separation& push = pushes.emplace_back();
+    push.vertex[0] = v;
+    push.weight[0] = 1;
+    push.direction = row(lifts, v) / length;
+    push.least = std::min(length, reach);
+    push.count = 1;
+  }
 }
 
 // The number of pairs of the cloth's triangles that cross each other.
@@ -181,8 +196,9 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     options.second_rule = false;
   }
   options.iterations = iterations_for(world, nodes, reach, before, options, limits);
+  const Points lifted = lifted_off(world, nodes, before.body, options.held, options.gap);
   const UntangleResult parted =
-      (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
+      (budget ? *budget : ample).untangle(*world.cloth, lifted, std::span(sheets.views).subspan(1), options);
   const std::vector<char> still_tangled = tangled_at(world, nodes, parted);
   const Points whole = parted.x - from;
   Points wanted = whole;
@@ -192,6 +208,7 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
     std::vector<Separation> separations =
         pushes_along(whole, still_tangled, sheets, limits.negligible_move * parted.mean_edge, reach);
+    add_lifts(lifted - from, reach, separations);
     drop_let_through(options.let_through, separations);
     Points moved = nodes;
     moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, separations, wanted, reach);
