@@ -83,7 +83,8 @@ const Options<GuardOptions>& guard_options() {
        number("still", &O::still, Unit::length, positive,
               "Lower bound of the RMS displacement that `change_of_motion` divides by. Slower cloth counts as still."),
        number("slight", &O::slight, Unit::acceleration, not_negative,
-              "Residual acceleration of patches that `unexplained` always admits.")});
+              "Residual acceleration of patches that `unexplained` always admits, and the largest of cloth that flies "
+              "free.")});
   return table;
 }
 
