@@ -37,6 +37,7 @@ struct TrainingRun {
   Clock::time_point started = Clock::now(), saved = Clock::now(), told = Clock::now();
   double seconds_before = 0;  // of earlier parts of the run
   long steps_before = 0;
+  double waited_before = 0;  // for the teacher, as measurements were prepared [s]
   double told_every = 2;
 
   double seconds() const { return seconds_before + seconds_since(started); }
@@ -134,8 +135,14 @@ void take_measure(TrainingRun& run) {
 std::string teacher_text(const TrainingRun& run) {
   if (!run.trainer->teacher) return "";
   const TeacherTally tally = run.trainer->teacher->tally();
-  return fmt::format(", {:.3g} targets/s by the solver, waited for it in {:.0f} % of the time", tally.rate(),
-                     100 * tally.waited / std::max(seconds_since(run.started), 1e-9));
+  const TrainingCounts& counts = run.trainer->counts;
+  std::string text =
+      fmt::format(", {:.3g} targets/s by the solver, waited for it in {:.0f} % of the time", tally.rate(),
+                  100 * (tally.waited - run.waited_before) / std::max(seconds_since(run.started), 1e-9));
+  if (run.options.teacher.uses > 1)
+    text += fmt::format(", {:.3g} samples a target",
+                        1 + static_cast<double>(counts.again) / static_cast<double>(std::max(counts.frames, 1L)));
+  return text;
 }
 
 void tell(TrainingRun& run, bool now = false) {
@@ -210,6 +217,7 @@ void begin(TrainingRun& run) {
     run.say(who);
   }
   run.watch = make_training_watch(run.options, *run.trainer);
+  if (run.trainer->teacher) run.waited_before = run.trainer->teacher->tally().waited;
   run.started = run.saved = run.told = Clock::now();
 }
 

@@ -181,6 +181,19 @@ AdamState read_adam(FieldsIn& in, const Architecture& architecture) {
   return adam_from_arrays(architecture, arrays, in.file.path().string());
 }
 
+// A roll-out in progress: its request, whether it is over, and unless it is the place in it.
+void write_rolling(FieldsOut& out, const std::string& name, const RollingState& state) {
+  std::vector<double> numbers = numbers_of(state.roll.request);
+  const KeptRolling kept_state = kept(state);
+  numbers.insert(numbers.end(), {double(state.over), double(kept_state.frame), double(kept_state.pass)});
+  out.numbers(name + "roll", numbers);
+  if (state.over) return;
+  out.points(name + "x", kept_state.x);
+  out.points(name + "previous", kept_state.previous);
+  out.points(name + "velocity", kept_state.velocity);
+  out.points(name + "guess", kept_state.guess);
+}
+
 void write_pool(FieldsOut& out, const Trainer& trainer) {
   std::vector<double> waiting;
   for (const RollRequest& request : trainer.queue->waiting()) {
@@ -188,60 +201,101 @@ void write_pool(FieldsOut& out, const Trainer& trainer) {
     waiting.insert(waiting.end(), numbers.begin(), numbers.end());
   }
   out.numbers("waiting", waiting);
-  for (std::size_t k = 0; k < trainer.pool.size(); ++k) {
-    const RollingState& state = trainer.pool[k];
-    const std::string name = fmt::format("state_{}_", k);
-    std::vector<double> numbers = numbers_of(state.roll.request);
-    const KeptRolling kept_state = kept(state);
-    numbers.insert(numbers.end(), {double(state.over), double(kept_state.frame), double(kept_state.pass)});
-    out.numbers(name + "roll", numbers);
-    if (state.over) continue;
-    out.points(name + "x", kept_state.x);
-    out.points(name + "previous", kept_state.previous);
-    out.points(name + "velocity", kept_state.velocity);
-    out.points(name + "guess", kept_state.guess);
-  }
+  for (std::size_t k = 0; k < trainer.pool.size(); ++k)
+    write_rolling(out, fmt::format("state_{}_", k), trainer.pool[k]);
+}
+
+// What write_rolling wrote.
+struct WrittenRolling {
+  bool over = true;
+  RollRequest request;
+  KeptRolling kept;
+};
+
+WrittenRolling read_rolling(FieldsIn& in, const std::string& name, const TrainingWorld& world) {
+  const std::vector<double> numbers = in.numbers(name + "roll");
+  if (numbers.size() != request_numbers + 3) in.fail("the field `" + name + "roll` has another length");
+  if (numbers[request_numbers] != 0) return {};
+  const auto integer = [&](std::size_t n) { return int(in.whole(name + "roll", numbers[request_numbers + n], 1e9)); };
+  return {false,
+          request_of(in, world, numbers),
+          {integer(1), integer(2), in.points(name + "x"), in.points(name + "previous"), in.points(name + "velocity"),
+           in.points(name + "guess")}};
+}
+
+// The roll-out is prepared without the frames that the solver made before its start, which is long past.
+void ask_to_go_on(RollRequest request, Trainer& trainer) {
+  request.simulated = 0;
+  trainer.queue->ask(request);
+}
+
+// Goes on with the roll-out that was asked for.
+void go_on(const FieldsIn& in, const WrittenRolling& written, Trainer& trainer, RollingState& state) {
+  Roll roll = trainer.queue->take();
+  roll.request = written.request;
+  const Eigen::Index rows = roll.start.rows();
+  const KeptRolling& from = written.kept;
+  if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
+      (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame >= roll.request.frames ||
+      from.pass >= trainer.architecture.passes)
+    in.fail("has a state that does not fit its garment");
+  resume_roll(std::move(roll), from, state);
 }
 
 // Prepares the roll-outs again.
 void read_pool(FieldsIn& in, Trainer& trainer) {
   const std::vector<double> waiting = in.numbers("waiting");
-  std::vector<KeptRolling> states(trainer.pool.size());
-  std::vector<std::size_t> going;
+  std::vector<WrittenRolling> states;
   for (std::size_t k = 0; k < trainer.pool.size(); ++k) {
-    const std::string name = fmt::format("state_{}_", k);
-    const std::vector<double> numbers = in.numbers(name + "roll");
-    if (numbers.size() != request_numbers + 3) in.fail("the field `" + name + "roll` has another length");
-    if (numbers[request_numbers] != 0) continue;
-    going.push_back(k);
-    trainer.queue->ask(request_of(in, trainer.maker->world, numbers));
-    const auto integer = [&](std::size_t n) { return int(in.whole(name + "roll", numbers[request_numbers + n], 1e9)); };
-    states[k] = {integer(1),
-                 integer(2),
-                 in.points(name + "x"),
-                 in.points(name + "previous"),
-                 in.points(name + "velocity"),
-                 in.points(name + "guess")};
+    states.push_back(read_rolling(in, fmt::format("state_{}_", k), trainer.maker->world));
+    if (!states.back().over) ask_to_go_on(states.back().request, trainer);
   }
-  for (const std::size_t k : going) {
-    Roll roll = trainer.queue->take();
-    const Eigen::Index rows = roll.start.rows();
-    const KeptRolling& from = states[k];
-    if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
-        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame >= roll.request.frames ||
-        from.pass >= trainer.architecture.passes)
-      in.fail("has a state that does not fit its garment");
-    resume_roll(std::move(roll), from, trainer.pool[k]);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    if (states[k].over) continue;
+    go_on(in, states[k], trainer, trainer.pool[k]);
     set_guard(trainer.options, trainer.pool[k]);
   }
   for (std::size_t k = 0; k + request_numbers <= waiting.size(); k += request_numbers)
     trainer.queue->ask(request_of(in, trainer.maker->world, std::span(waiting).subspan(k)));
 }
 
+void write_taught(FieldsOut& out, const TaughtStates& taught) {
+  out.numbers("taught", {double(taught.all.size()), double(taught.oldest)});
+  for (std::size_t k = 0; k < taught.all.size(); ++k) {
+    const std::string name = fmt::format("taught_{}_", k);
+    write_rolling(out, name, taught.all[k]->state);
+    out.points(name + "target", taught.all[k]->state.taught.get().x);
+  }
+}
+
+// Makes what the network sees of the states again.
+void read_taught(FieldsIn& in, Trainer& trainer) {
+  const std::vector<double> numbers = in.numbers("taught");
+  if (numbers.size() != 2) in.fail("the field `taught` has another length");
+  const std::int64_t count = in.whole("taught", numbers[0], double(trainer.taught.most));
+  trainer.taught.oldest = std::size_t(in.whole("taught", numbers[1], double(trainer.taught.most) - 1));
+  const FrameMaking making = frame_making(trainer);
+  for (std::int64_t k = 0; k < count; ++k) {
+    const std::string name = fmt::format("taught_{}_", k);
+    const WrittenRolling written = read_rolling(in, name, trainer.maker->world);
+    Points target = in.points(name + "target");
+    if (written.over || target.rows() != written.kept.x.rows()) in.fail("has a target that does not fit its state");
+    RollingState state;
+    ask_to_go_on(written.request, trainer);
+    go_on(in, written, trainer, state);
+    std::promise<TeacherStep> taught;
+    taught.set_value({std::move(target), nullptr, ""});
+    state.taught = taught.get_future().share();
+    Graph raw;
+    if (!raw_graph_of(making, trainer.network.weights.tables, state, raw)) in.fail("has a state without a graph");
+    trainer.taught.all.push_back(taught_copy(state, std::move(raw)));
+  }
+}
+
 void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory& history) {
   const TrainingCounts& c = trainer.counts;
   out.numbers("counts", {double(c.step), double(c.rolls), double(c.frames), double(c.lost), double(c.given_up),
-                         double(c.bad), double(c.bad_in_a_row)});
+                         double(c.bad), double(c.bad_in_a_row), double(c.again)});
   out.text("random", fmt::format("{:016x}", trainer.random.state));
   out.text("steps", history.steps);
   out.text("measures", history.measures);
@@ -250,9 +304,10 @@ void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory&
 
 void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
   const std::vector<double> c = in.numbers("counts");
-  if (c.size() != 7) in.fail("the field `counts` has another length");
+  if (c.size() != 8) in.fail("the field `counts` has another length");
   const auto count = [&](std::size_t k) { return in.whole("counts", c[k], 1e15); };
-  trainer.counts = {count(0), static_cast<std::uint64_t>(count(1)), count(2), count(3), count(4), count(5), count(6)};
+  trainer.counts = {count(0), static_cast<std::uint64_t>(count(1)), count(2), count(3), count(4), count(5), count(6),
+                    count(7)};
   trainer.random.state = std::strtoull(in.text("random").c_str(), nullptr, 16);
   history.steps = in.text("steps");
   history.measures = in.text("measures");
@@ -333,6 +388,7 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
     };
     visit_statistics(write_sums, trainer.sums);
     write_adam(out, trainer);
+    write_taught(out, trainer.taught);
     write_pool(out, trainer);
     file.write_text("checksum", fmt::format("{:016x}", out.sum));
   });
@@ -364,9 +420,10 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   };
   visit_statistics(read_sums, trainer->sums);
   trainer->adam = read_adam(in, trainer->architecture);
+  trainer->network = make_training_network(trainer->architecture, std::move(weights));
+  read_taught(in, *trainer);
   read_pool(in, *trainer);
   if (fmt::format("{:016x}", in.sum) != file.read_text("checksum")) in.fail("its checksum is wrong: it is damaged");
-  trainer->network = make_training_network(trainer->architecture, std::move(weights));
   trainer->torch = torch_network_for(options.device, trainer->architecture, trainer->network.weights);
   return trainer;
 }
