@@ -17,7 +17,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch format check-format tidy docs clean
+.PHONY: help program demo test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -58,7 +58,7 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long check-install minimal wheel asan fuzz torch tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and the tutorials too; CI runs a part
+everything: test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
 fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
 	@cmake/install-packages.sh build fuzz
 	@$(MAKE) --no-print-directory build/fuzz/configured
@@ -82,6 +82,12 @@ torch:  ## libtorch's library beside the program in build/release, and the tests
 	@cmake --preset release -DSELVEDGE_TORCH=ON $(CONFIGURE)
 	@cmake --build --preset release --parallel $(JOBS) --target selvedge_torch selvedge_tests
 	@build/release/selvedge_tests "[torch]"
+
+mpi:  ## Open MPI's library beside the program in build/release, for mpirun, and the tests of training on several processes
+	@cmake/install-packages.sh $(PACKAGES_release) mpi
+	@cmake --preset release -DSELVEDGE_MPI=ON $(CONFIGURE)
+	@cmake --build --preset release --parallel $(JOBS) --target selvedge_mpi selvedge selvedge_tests
+	@build/release/selvedge_tests "[mpi]"
 
 test-%:
 	@cmake/install-packages.sh $(PACKAGES_$*)

@@ -6,6 +6,8 @@
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
 #include "pipeline/host/interrupt.hpp"
+#include "pipeline/processes/mpi_processes.hpp"
+#include "pipeline/processes/together.hpp"
 #include "pipeline/training/running_mark.hpp"
 #include "pipeline/training/train.hpp"
 
@@ -22,6 +24,16 @@ struct TrainArguments {
 std::string name_of_run(const TrainArguments& arguments) {
   return is_drape_training(arguments.config) ? read_drape_training(arguments.config, arguments.overrides).name
                                              : read_training(arguments.config, arguments.overrides).name;
+}
+
+// Trains in a process beside the first one, which says what came of it. A failure is the first one's status alone:
+// where another process ended with one, mpirun would end the first one, perhaps before it has said what has failed.
+int train_beside(const TrainRequest& request) {
+  try {
+    train_as_asked(request);
+  } catch (const SharedFailure&) {
+  }
+  return 0;
 }
 
 }  // namespace
@@ -57,11 +69,19 @@ RunCommand train_command(CLI::App& command) {
                    << "\n";
       return paused ? 0 : 1;
     }
+    std::unique_ptr<Processes> processes;
+    try {
+      processes = processes_of_mpirun();
+    } catch (const Error&) {
+      if (speaks_for_machine()) throw;
+      return 0;
+    }
     const InterruptWatch watch;
+    TrainRequest request{arguments->config, arguments->overrides,        arguments->out, arguments->resume,
+                         &std::cerr,        InterruptWatch::interrupted, processes.get()};
+    if (processes && processes->rank() > 0) return train_beside(request);
     const RunningMark mark(arguments->config);
     if (mark.other()) std::cerr << "warning: another training runs: " << *mark.other() << "\n";
-    TrainRequest request{arguments->config, arguments->overrides, arguments->out,
-                         arguments->resume, &std::cerr,           InterruptWatch::interrupted};
     const TrainedRun made = train_as_asked(request);
     const char* more = made.finished ? "" : "go on with --resume and the same arguments\n";
     return end_command(json, made.text + more, made.json, made.finished);

@@ -11,6 +11,7 @@
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/plots/page_html.hpp"
+#include "pipeline/processes/together.hpp"
 #include "pipeline/run/progress.hpp"
 #include "pipeline/training/column_plots.hpp"
 
@@ -141,12 +142,16 @@ std::string drape_train_json(const DrapeTrainSummary& s) {
 }
 
 TrainedRun train_as_asked(const TrainRequest& request) {
-  if (is_drape_training(request.config)) {
+  return together(request.processes, [&]() -> TrainedRun {
+    if (!is_drape_training(request.config)) {
+      const TrainSummary summary = train(request);
+      return {train_text(summary), train_json(summary), summary.finished};
+    }
+    if (request.processes)
+      throw Error("networks of drapes are trained by one process", request.config.string(), "start it without mpirun");
     const DrapeTrainSummary summary = train_drapes(request);
     return {drape_train_text(summary), drape_train_json(summary), summary.finished};
-  }
-  const TrainSummary summary = train(request);
-  return {train_text(summary), train_json(summary), summary.finished};
+  });
 }
 
 }  // namespace selvedge
