@@ -67,6 +67,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"cells"},
       {"tools"},
       {"training"},
+      {"teach"},
       {"drapes"},
       {"validate"},
       {"compare"},

@@ -28,7 +28,7 @@ AddCommand check_command, untangle_command, push_command, dress_command, pattern
 // suite_commands.cpp
 AddCommand bench_command, stress_command, compare_command, validate_command, stability_command, wardrobe_command;
 AddCommand cells_command, cell_command, gather_command;  // cell_commands.cpp
-AddCommand dataset_command, train_command;               // training_commands.cpp
+AddCommand dataset_command, train_command, teach_command;  // training_commands.cpp
 AddCommand weights_import_command, weights_info_command, weights_halve_command, weights_parity_command;
 
 struct Command {
@@ -64,6 +64,7 @@ inline constexpr Command commands[]{
     {"Use", "gather", "the tables of a work's cells that are there", gather_command},
     {"Prepare", "dataset", "drapes at rest to train a network on", dataset_command},
     {"Prepare", "train", "a network of the stepper `learned`, or one of drapes", train_command},
+    {"Prepare", "teach", "coefficients for one outfit, fitted to the solver's frames", teach_command},
     {"Prepare", "weights", "weight files of learned steppers", nullptr},
     {"Subcommands", "weights import", "a weight file from a published checkpoint", weights_import_command},
     {"Subcommands", "weights info", "what is in a weight file", weights_info_command},

@@ -43,7 +43,7 @@ TEST_CASE("carried: cloth goes along with its skinned target, and keeps a part o
 }
 
 TEST_CASE("carried: the default set gives the bits of the formula, and other sets give their sum", "[carried]") {
-  World world = make_world(testing::sheet(5, 0.2, 1));
+  World world = make_world(testing::sheet(4, 0.2, 1));
   world.drive.skinned_targets = moved(world, {0.013, 0.007, 0.003});
   State before = world.state, from = world.state;
   before.memory = carried_memory({}, world.drive, before.x);

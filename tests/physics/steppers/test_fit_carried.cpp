@@ -11,7 +11,7 @@ namespace selvedge::test_fit_carried {
 namespace {
 
 constexpr double dt = 1.0 / 30;
-constexpr int side = 5, count = side * side;
+constexpr int side = 4, count = (side + 1) * (side + 1);  // quads along a side, vertices
 
 // A worn sheet whose target turns and sways, with rows that no two terms share.
 testing::World worn_sheet() {
