@@ -70,6 +70,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"processes"},
       {"mpi", {"processes"}, Door::closed},
       {"training"},
+      {"teach"},
       {"drapes"},
       {"validate"},
       {"compare"},

@@ -53,11 +53,12 @@ Setup read_scene(const SceneArguments& arguments) {
     overrides.push_back("run.learned.weights=" + quoted_yaml(std::filesystem::absolute(*arguments.weights).string()));
   if (arguments.device) overrides.push_back("run.learned.device=" + *arguments.device);
   Setup setup = read_setup(arguments.scene, overrides);
-  if ((arguments.weights || arguments.device) && setup.kind.network == NetworkUse::none)
+  const bool unread = arguments.weights && !reads_weights(setup);
+  if (unread || (arguments.device && setup.kind.network == NetworkUse::none))
     setup.warnings.push_back(
         fmt::format("{} has no part in the stepper `{}`, which runs no network; --stepper learned "
                     "and --stepper hybrid do",
-                    arguments.weights ? "--weights" : "--device", setup.run.stepper));
+                    unread ? "--weights" : "--device", setup.run.stepper));
   return setup;
 }
 
@@ -151,7 +152,8 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
   add_overrides(command, arguments.overrides, "the scene's");
   command.add_option("--stepper", arguments.stepper, "method that makes the frames: " + joined(known_kinds().names()));
-  command.add_option("--weights", arguments.weights, "weight file of the steppers `learned` and `hybrid`");
+  command.add_option("--weights", arguments.weights,
+                     "weight file of the steppers `learned`, `hybrid` and `carried_fitted`");
   command.add_option("--device", arguments.device, "device that computes the network: cpu, libtorch, cuda or auto");
 }
 

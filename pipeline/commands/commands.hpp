@@ -28,7 +28,7 @@ AddCommand check_command, untangle_command, push_command, dress_command, pattern
 // suite_commands.cpp
 AddCommand bench_command, stress_command, compare_command, validate_command, stability_command, wardrobe_command;
 AddCommand cells_command, cell_command, gather_command;  // cell_commands.cpp
-AddCommand dataset_command, train_command;               // training_commands.cpp
+AddCommand dataset_command, train_command, teach_command;  // training_commands.cpp
 AddCommand weights_import_command, weights_info_command, weights_halve_command, weights_parity_command;
 
 struct Command {
@@ -64,6 +64,7 @@ inline constexpr Command commands[]{
     {"Long works", "gather", "make the tables of the cells that are done", gather_command},
     {"Prepare", "dataset", "make drapes of a garment at rest, to train a network on", dataset_command},
     {"Prepare", "train", "train a network for the stepper `learned`, or one for drapes", train_command},
+    {"Prepare", "teach", "fit coefficients of the carried guess to the solver's frames", teach_command},
     {"Prepare", "weights", "import, describe, compress and check weight files", nullptr},
     {"Subcommands", "weights import", "make a weight file of a published checkpoint", weights_import_command},
     {"Subcommands", "weights info", "say what is in a weight file", weights_info_command},

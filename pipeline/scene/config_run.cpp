@@ -37,8 +37,8 @@ const Options<LearnedRun>& learned_options() {
   static const Options<O> table(
       "learned", "A network makes the frames, at 30 a second. Penetrations are not removed; they are reported.",
       {path("weights", &O::weights,
-            "Weights of the network, a file that `selvedge train` or `selvedge weights import` writes. The path is "
-            "relative to the scene file."),
+            "Weights of the network, a file that `selvedge train` or `selvedge weights import` writes. Of the stepper "
+            "`carried_fitted`: its coefficients, by `selvedge teach`. The path is relative to the scene file."),
        flag("settle", &O::settle,
             "True: the first frame begins with a pass of the network in which the cloth falls to rest, as in "
             "ContourCraft's training. HOOD always has this pass."),
