@@ -48,8 +48,8 @@ def bake(garment, resume=False, report=None):
     """Bakes the garment by its settings (`garment.selvedge`) over frames of the present scene, and waits for the end.
 
     resume: go on where the last bake was stopped. report: is called with a text and a fraction now and then. Returns
-    whether the bake has come to its end and is clean; the settings say more. Raises Failure for what is wrong with scene,
-    settings or program.
+    whether the bake has come to its end and is clean; the settings say more. Raises Failure for what is wrong with
+    scene, settings or program.
     """
     job = new_job(bpy.context, garment, resume)
     for _ in steps(job):
@@ -86,7 +86,7 @@ def frame_span(settings, scene):
         first, last = settings.frame_start, settings.frame_end
     step = max(1, scene.frame_step)
     if last < first + step:
-        raise Failure(f"there is nothing to bake from frame {first} to {last} in steps of {step}", "choose other frames")
+        raise Failure(f"there is no step of {step} from frame {first} to {last}", "choose other frames")
     return first, step, (last - first) // step
 
 

@@ -96,10 +96,12 @@ class SELVEDGE_OT_bake(bpy.types.Operator):
 
 
 def redraw(context):
+    """The panel alone: the viewport draws itself where something in it has changed."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+            for region in area.regions if area.type == "VIEW_3D" else ():
+                if region.type == "UI":
+                    region.tag_redraw()
 
 
 class SELVEDGE_OT_stop(bpy.types.Operator):

@@ -18,7 +18,7 @@ def packed():
 
 def pack(target):
     target.parent.mkdir(parents=True, exist_ok=True)
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:  # packed, it would depend on the library's version
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:  # compressed bytes depend on zlib's version
         for file in packed():
             entry = zipfile.ZipInfo(f"{NAME}/{file.name}", BEGIN_OF_TIME)
             entry.create_system, entry.external_attr = 3, 0o644 << 16  # Unix

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts a baked cloth onto its garment: the cache and its modifier, the verdict, markers of bad frames; and takes all away."""
+"""Puts a baked cloth onto its garment: the cache and its modifier, markers of bad frames. Takes all of it away, too."""
 
 import bpy
 import numpy as np

@@ -125,5 +125,5 @@ def pinned_vertices(garment):
     weighted = lambda vertex: any(one.group == group and one.weight >= 0.5 for one in vertex.groups)
     found = [vertex.index for vertex in garment.data.vertices if weighted(vertex)]
     if not found:
-        raise Failure(f"no vertex has a weight of 0.5 or more in the group `{name}`", "assign vertices to it, or choose none")
+        raise Failure(f"no vertex has a weight of 0.5 or more in the group `{name}`", "assign some, or choose none")
     return found

@@ -23,7 +23,7 @@ def to_blender_axes(x, unit_scale):
 
 
 def obj_text(x, counts, corners):
-    """A mesh: positions n x 3, the number of corners of each face, and the vertices of all corners one after another."""
+    """A mesh: positions n x 3, the number of corners of each face, the vertices of all corners one after another."""
     lines = ["v %.9g %.9g %.9g" % tuple(p) for p in x]
     ends = np.cumsum(counts)
     lines += ["f " + " ".join(map(str, corners[end - count : end] + 1)) for count, end in zip(counts, ends)]

@@ -29,13 +29,11 @@ def hosts():
     return found + ([[sys.executable]] if importlib.util.find_spec("bpy") else [])
 
 
-def environment(folder):
-    """Blender's settings and add-ons lie below the folder."""
-    own = {name: str(folder / "user" / name) for name in ("BLENDER_USER_SCRIPTS", "BLENDER_USER_CONFIG")}
-    return dict(os.environ, BLENDER_USER_RESOURCES=str(folder / "user"), **own)
+def host_name(host):
+    return pathlib.Path(host[0]).parts[-3] if host else ""
 
 
-@pytest.fixture(scope="module", params=hosts() or [None], ids=lambda host: pathlib.Path(host[0]).parts[-3] if host else "")
+@pytest.fixture(scope="module", params=hosts() or [None], ids=host_name)
 def baked(request, tmp_path_factory):
     """What Blender shows, what the add-on says, and the folder of the runs."""
     if not request.param:
@@ -45,7 +43,7 @@ def baked(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("addon")
     addon.part("pack").pack(folder / "addon.zip")
     command = [*request.param, HERE / "blender_addon.py", "--", folder / "addon.zip", folder, PROGRAM]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=environment(folder))
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=addon.environment(folder))
     assert done.returncode == 0, done.stdout + done.stderr
     said = json.loads((folder / "said.json").read_text())
     print(f"Blender {said['version']}")
@@ -124,8 +122,9 @@ def test_a_tangled_start_is_red(baked):
 
 def test_cleared(baked):
     _, said, _ = baked
-    assert said["cleared"]["modifiers"] == [["fine", "SUBSURF"]]
-    assert said["cleared"]["bad"] == said["cleared"]["markers"] == said["left"] == [] and said["cleared"]["message"] == ""
+    cleared = said["cleared"]
+    assert cleared["modifiers"] == [["fine", "SUBSURF"]] and cleared["message"] == ""
+    assert cleared["bad"] == cleared["markers"] == said["left"] == []
     assert said["unregistered"]
 
 

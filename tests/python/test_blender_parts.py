@@ -38,7 +38,8 @@ def test_a_mesh_keeps_its_order_and_its_floats():
 
 def test_a_scene_file():
     scene = scene_file.Scene("a: \"b\"", "garment.obj", 30, 12.5, rest="rest.obj", sample_fps=25.0)
-    scene.obstacles = [scene_file.Obstacle("still", "body_0.obj"), scene_file.Obstacle("é", "body_1.obj", "body_1.pc2")]
+    obstacle = scene_file.Obstacle
+    scene.obstacles = [obstacle("still", "body_0.obj"), obstacle("é", "body_1.obj", "body_1.pc2")]
     scene.pins = scene_file.Pins([4, 7])
     assert scene_file.scene_text(scene) == (
         'cloths:\n  - name: "a: \\"b\\""\n    mesh: "garment.obj"\n    rest: {from: mesh, file: "rest.obj"}\n'
@@ -204,8 +205,8 @@ def test_frames_with_pairs():
 
 
 def test_the_verdict():
-    keys = "intersecting_pairs_all_frames vertex_sharing_pairs_all_frames inside_vertices passed_through jumped nonfinite"
-    counts = dict.fromkeys(keys.split(), 0)
+    pairs = ["intersecting_pairs_all_frames", "vertex_sharing_pairs_all_frames"]
+    counts = dict.fromkeys([*pairs, "inside_vertices", "passed_through", "jumped", "nonfinite"], 0)
     run = {"frames": 30, "frames_wanted": 30, "end": "finished", "reason": "", "clean": True, **counts}
     assert audit.verdict(run) == "30 of 30 frames, clean" and not audit.has_pairs(run)
     run |= {"clean": False, "intersecting_pairs_all_frames": 7, "inside_vertices": 2}
