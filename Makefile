@@ -17,7 +17,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
+.PHONY: help program demo blender with-blender test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -58,7 +58,10 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
+everything: with-blender test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
+# Blender and a display for it, so that tests and tutorials do not leave out what needs them.
+with-blender:
+	@cmake/install-packages.sh blender
 fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
 	@cmake/install-packages.sh build fuzz
 	@$(MAKE) --no-print-directory build/fuzz/configured
@@ -122,6 +125,9 @@ tutorials: program  ## Every command and picture of docs/tutorials and docs/gall
 	  cmake --build --preset release --parallel $(JOBS) --target _selvedge
 	@python=build/release/venv/bin/python; [ -x $$python ] || python=/usr/bin/python3; \
 	  $$python docs/tutorials/run.py $(PROGRAM) build/release/python $(PAGES)
+
+blender:  ## The add-on for Blender: out/blender/selvedge_cloth.zip
+	@python3 pipeline/blender/pack.py out/blender/selvedge_cloth.zip
 
 docs:  ## The site of docs/, with references of Python and C++: out/site
 	@cmake/install-packages.sh docs
