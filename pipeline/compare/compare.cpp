@@ -9,6 +9,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/cells/do_cells.hpp"
 #include "pipeline/cells/scene_cells.hpp"
+#include "pipeline/compare/compare_plots.hpp"
 #include "pipeline/compare/compare_scene.hpp"
 #include "pipeline/compare/compared_drapes.hpp"
 #include "pipeline/compare/evaluation.hpp"

@@ -13,7 +13,12 @@ namespace {
 
 YAML::Node loaded(const std::string& text, const std::string& where) {
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    for (std::size_t i = 1; i < documents.size(); ++i)
+      if (!documents[i].IsNull())
+        throw Error("holds more than one YAML document", where,
+                    "keep one, and a file for each other: a line `---` begins another");
+    return documents.empty() ? YAML::Node() : documents[0];
   } catch (const YAML::Exception& e) {
     throw Error("is not YAML: " + e.msg, e.mark.is_null() ? where : fmt::format("{}:{}", where, e.mark.line + 1),
                 "look there and in the lines before it: brackets and quotes that are not closed, tabs, other indents");

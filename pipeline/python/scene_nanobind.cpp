@@ -36,7 +36,7 @@ State prepared(const Setup& setup) {
   const StopFlag flag = [&] { return stop.asked(); };
   std::optional<Start> start;
   {
-    const nb::gil_scoped_acquire lock;  // whoever calls this may have let go of it
+    const nb::gil_scoped_acquire lock;  // the caller may have released it
     const nb::gil_scoped_release unlocked;
     start = prepare(setup, flag, nullptr, flag);
   }

@@ -46,21 +46,21 @@ const Section& wardrobe_section() {
                              "",
                              {kind_key(), description_key(), texts("wear", "Garments and outfits. Default: all."),
                               texts("clips", "Procedural clips. Default: all."),
-                              integer("frames", not_negative, "0", "Most frames of a clip. 0: all."),
+                              integer("frames", not_negative, "0", "Largest number of frames of a clip. 0: all."),
                               path("configs", "Folder of the configurations. Default: the program's.")}};
   return table;
 }
 
 const Section& stress_section() {
-  static const Section table{
-      "stress",
-      "",
-      {kind_key(), description_key(), texts("scenes", "Names of scenes. Default: all."),
-       integer("repeats", at_least_one, "10", "Runs of each scene."),
-       integer("seed", not_negative, "1", "Of the first repeat's jitter."),
-       number("jitter", Unit::none, not_negative, "0.01", "Jitter of the starts, in mean edge lengths."),
-       flag("short", false, "True: the scenes' short forms."),
-       path("configs", "Folder of the scenes. Default: the program's.")}};
+  static const Section table{"stress",
+                             "",
+                             {kind_key(), description_key(), texts("scenes", "Names of scenes. Default: all."),
+                              integer("repeats", at_least_one, "10", "Number of runs of each scene."),
+                              integer("seed", not_negative, "1", "Seed of the jitter in the first repeat."),
+                              number("jitter", Unit::none, not_negative, "0.01",
+                                     "Largest random displacement of start positions, in mean edge lengths."),
+                              flag("short", false, "True: the short forms of the scenes are run."),
+                              path("configs", "Folder of the scenes. Default: the program's.")}};
   return table;
 }
 
@@ -69,7 +69,7 @@ const Section& compare_section() {
       "compare",
       "",
       {kind_key(), description_key(), needed(path("file", "Comparison file, relative to this file's folder.")),
-       flag("short", false, "True: the short form of the comparison and its scenes."),
+       flag("short", false, "True: the short forms of the comparison and of its scenes are run."),
        texts("set", "`key=value` overrides of the comparison.")}};
   return table;
 }
@@ -79,9 +79,9 @@ const Section& stability_section() {
       "stability",
       "",
       {kind_key(), description_key(), needed(path("suite", "Suite file, relative to this file's folder.")),
-       texts("cases", "Names of cases. Default: all."), text("stepper", "In place of the scenes' own."),
+       texts("cases", "Names of cases. Default: all."), text("stepper", "Stepper, in place of the scenes' own."),
        path("weights", "Weight file of its network, relative to this file's folder."),
-       flag("short", false, "True: the runs that the suite marks as short.")}};
+       flag("short", false, "True: only the runs that the suite marks as short are done.")}};
   return table;
 }
 
