@@ -217,7 +217,7 @@ RunCommand export_command(CLI::App& command) {
   command.add_flag("--obstacles", request->obstacles, "also the obstacles");
   command.add_option("--onto", request->onto,
                      "a mesh of your own, at the cloth's rest shape, that it moves (.obj, .ply)");
-  command.add_option("--onto-unit", request->onto_unit, "of that mesh: m, dm, cm, mm");
+  command.add_option("--onto-unit", request->onto_unit, "of that mesh: m, dm, cm, mm, in");
   command.add_option("--cloth", request->cloth, "the cloth that moves it; without it all do");
   return [request](bool json) {
     Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
