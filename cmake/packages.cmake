@@ -37,6 +37,10 @@ if(SELVEDGE_SUITESPARSE)
   target_link_libraries(selvedge_cholmod INTERFACE ${CHOLMOD_LIBRARY})
 endif()
 
+if(SELVEDGE_MPI)
+  find_package(MPI REQUIRED COMPONENTS C)  # Open MPI: Debian's libopenmpi-dev
+endif()
+
 if(SELVEDGE_TORCH)
   find_package(Torch REQUIRED)  # Debian's libtorch-dev, or any newer one by CMAKE_PREFIX_PATH
 endif()

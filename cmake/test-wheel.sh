@@ -41,9 +41,20 @@ cp --parents -r -t "$folder/tests" tests/python README.md pyproject.toml docs co
 mv "$folder/source" "$folder/moved"
 trap 'mv "$folder/moved" "$folder/source"' EXIT
 cd "$folder/tests"
+# The first CPython 3.MINOR that starts, of those on PATH and those of pyenv, whose commands on PATH may be empty names.
+python_of() {
+  local one
+  for one in "$(command -v "python3.$1" || true)" "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3."$1".*/bin/python3; do
+    [[ -x "$one" ]] || continue
+    "$one" -c 'import ensurepip, sys, venv; sys.exit(sys.implementation.name != "cpython")' 2>/dev/null || continue
+    echo "$one"
+    return
+  done
+}
+
 tried=()
 for minor in $(seq 10 30); do
-  one="$(command -v "python3.$minor" || true)"
+  one="$(python_of "$minor")"
   [[ -n "$one" ]] || continue
   "$one" -m venv "$folder/empty-3.$minor"
   "$folder/empty-3.$minor/bin/pip" -q install "$folder"/wheels/*.whl pytest tqdm

@@ -20,6 +20,7 @@ struct Heavy {
 const std::vector<Heavy> heavy_packages = {
     {"HDF5", "(hdf5|H5.*)\\.h(pp)?", "(learned|pipeline)/.*hdf5.*|pipeline/tools/info.cpp"},
     {"CHOLMOD", "(.*/)?cholmod\\.h", ".*_cholmod\\.cpp"},
+    {"Open MPI", "mpi\\.h", "pipeline/mpi/.*_mpi\\.cpp"},
     {"libtorch", "(torch|ATen|c10)/.*", "learned/.*_torch\\.(cpp|hpp)"},
     {"FCL", "fcl/.*", ".*_fcl\\.cpp"},
     {"yaml-cpp", "yaml-cpp/.*", "pipeline/.*yaml.*"},

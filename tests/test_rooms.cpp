@@ -50,6 +50,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
     {"pipeline",
      {{"host"},
       {"config"},
+      {"plots", {"host"}},
       {"reports", {"host"}},
       {"formats"},
       {"exports"},
@@ -66,7 +67,10 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"view", {"host", "reports", "formats"}},
       {"cells"},
       {"tools"},
+      {"processes"},
+      {"mpi", {"processes"}, Door::closed},
       {"training"},
+      {"teach"},
       {"drapes"},
       {"validate"},
       {"compare"},
@@ -214,6 +218,8 @@ TEST_CASE("rooms: some include less than all to their left, and some are include
   CHECK(complaints("learned/torch/a_torch.cpp", "learned/steppers/b.hpp") == 1);
   CHECK(complaints("learned/network/a.cpp", "learned/torch/b_torch.hpp") == 1);
   CHECK(complaints("pipeline/training/a.cpp", "learned/torch/b_torch.hpp") == 1);
+  CHECK(complaints("pipeline/mpi/a_mpi.cpp", "pipeline/processes/b.hpp") == 0);
+  CHECK(complaints("pipeline/mpi/a_mpi.cpp", "pipeline/host/b.hpp") == 1);
 }
 
 TEST_CASE("rooms: the table names each room once, and only rooms of the module", "[modules]") {

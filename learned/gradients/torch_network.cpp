@@ -7,6 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
+#include "collision/geometry/shared_library.hpp"
 #include "learned/gradients/embedding_gradients.hpp"
 #include "learned/gradients/torch_interface.hpp"
 #include "learned/network/graph_plan.hpp"
@@ -16,13 +17,7 @@ namespace {
 
 const TorchCalls& torch_calls(const std::filesystem::path& library) {
   const std::string cure = "install libtorch-dev and configure with -DSELVEDGE_TORCH=ON, or train without libtorch";
-  void* loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-  restore_standard_arithmetic();  // a library may switch denormals off as it is loaded
-  if (!loaded) {
-    const char* reason = dlerror();
-    throw Error("libtorch's part cannot be loaded: " + std::string(reason ? reason : ""), library.string(), cure);
-  }
-  const auto entry = reinterpret_cast<TorchEntry>(dlsym(loaded, torch_entry));
+  const auto entry = reinterpret_cast<TorchEntry>(entry_of_library(library, torch_entry, "libtorch", cure));
   if (!entry || entry()->version != torch_interface_version)
     throw Error("the library is of another version of this program", library.string(), cure);
   return *entry();
@@ -162,11 +157,7 @@ struct TorchNetwork::Handle {
   }
 };
 
-std::filesystem::path torch_library_path() {
-  std::error_code failed;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
-  return (failed ? std::filesystem::path(".") : program.parent_path()) / "libselvedge_torch.so";
-}
+std::filesystem::path torch_library_path() { return library_beside_program("libselvedge_torch.so"); }
 
 TorchNetwork::TorchNetwork(const Architecture& a, const NetworkWeights& weights, const std::string& device, int threads,
                            const std::filesystem::path& library) {

@@ -23,7 +23,7 @@ std::string drape_train_text(const DrapeTrainSummary&);
 std::string drape_train_json(const DrapeTrainSummary&);
 
 // Trains what the file asks for: a network of the stepper `learned` (train), or one of drapes. Texts are for people and
-// as one JSON object.
+// as one JSON object. The latter is trained by one process: throws Error where there are several.
 struct TrainedRun {
   std::string text, json;
   bool finished = false;

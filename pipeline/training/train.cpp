@@ -13,6 +13,8 @@
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/processes/learning_sums.hpp"
+#include "pipeline/processes/together.hpp"
 #include "pipeline/run/progress.hpp"
 #include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
@@ -30,19 +32,22 @@ struct TrainingRun {
   TrainingOptions options;
   std::filesystem::path folder;
   std::unique_ptr<Trainer> trainer;
+  TrainingCounts counts;  // of all processes
   TrainingHistory history;
   TrainingWatch watch;
   StepWindow window;
   TrainingMeasure last;
-  Clock::time_point started = Clock::now(), saved = Clock::now(), told = Clock::now();
+  Clock::time_point started = Clock::now(), saved = Clock::now(), told = Clock::now(), looked = Clock::now();
   double seconds_before = 0;  // of earlier parts of the run
   long steps_before = 0;
   double waited_before = 0;  // for the teacher, as measurements were prepared [s]
   double told_every = 2;
 
+  // Whether this process writes files, measures and says how the run goes on.
+  bool leads() const { return !request.processes || request.processes->rank() == 0; }
   double seconds() const { return seconds_before + seconds_since(started); }
   void say(const std::string& line) const {
-    if (request.log) *request.log << line << std::endl;
+    if (request.log && leads()) *request.log << line << std::endl;
   }
 };
 
@@ -66,6 +71,7 @@ void write_weights(const TrainingRun& run, const std::string& name) {
                  {"seed", std::to_string(run.options.seed)},
                  {"steps", fmt::format("{} of {}", trainer.counts.step, run.options.steps)},
                  {"hours", fmt::format("{:.3f}", run.seconds() / 3600)}};
+  if (run.request.processes) file.origin.push_back({"processes", std::to_string(process_count(trainer))});
   write_weight_file(run.folder / name, file);
 }
 
@@ -78,9 +84,11 @@ void write_tables(const TrainingRun& run) {
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
   const TrainingWorld& world = run.trainer->maker->world;
-  run.trainer->queue->locked([&] { write_soft_tissue(world.soft_tissue_folder, world); });
-  write_weights(run, "weights.h5");
-  write_tables(run);
+  if (run.leads()) {
+    run.trainer->queue->locked([&] { write_soft_tissue(world.soft_tissue_folder, world); });
+    write_weights(run, "weights.h5");
+    write_tables(run);
+  }
   write_training_checkpoint(run.folder / "checkpoint.h5", *run.trainer, run.history);
   run.saved = Clock::now();
 }
@@ -89,7 +97,8 @@ std::string measure_text(const TrainingMeasure& m) {
   const RollMeasure& r = m.roll;
   if (!r.finite) return fmt::format("step {}: the measuring roll-out is not finite after {} frames", m.step, r.frames);
   return fmt::format(
-      "step {}: gap closed {:.3f} worn, {:.3f} minimised; roll-out of {} frames: objective {:.4g} J, strain {:.2f} % "
+      "step {}: gap closed {:.3f} (skinned), {:.3f} (minimised); roll-out of {} frames: objective {:.4g} J, strain "
+      "{:.2f} % "
       "(99 %: {:.1f} %), {:.2f} % of the vertices deep in the body, {:.0f} pairs at the end",
       m.step, m.skinned.closed, m.minimised.closed, r.frames, r.energy, 100 * r.strain, 100 * r.strain_99, 100 * r.deep,
       static_cast<double>(r.pairs_at_end));
@@ -113,6 +122,7 @@ std::string starts_text(std::vector<int> pairs) {
 }
 
 void take_measure(TrainingRun& run) {
+  if (!run.leads()) return;
   run.last = measure(*run.trainer, run.watch);
   run.history.measures += measure_line(run.last, run.seconds());
   run.say(measure_text(run.last));
@@ -148,10 +158,10 @@ void tell(TrainingRun& run, bool now = false) {
   if (!now && seconds_since(run.told) < run.told_every) return;
   run.told = Clock::now();
   run.told_every = std::min(1.5 * run.told_every, 60.0);
-  const TrainingCounts& counts = run.trainer->counts;
+  const TrainingCounts& counts = run.counts;
   const double rate = static_cast<double>(counts.step - run.steps_before) / seconds_since(run.started);
   run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g} J, {} bad samples, {} lost roll-outs",
-                      counts.step, run.options.steps, rate * run.options.optimiser.batch,
+                      counts.step, run.options.steps, rate * run.options.optimiser.batch * process_count(*run.trainer),
                       rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
                       counts.bad, counts.lost) +
           teacher_text(run));
@@ -170,45 +180,94 @@ bool is_kept_now(const TrainingRun& run) {
   return at > 0 && step >= at && step - 1 < at;
 }
 
+// What is to be done after a step.
+struct Wishes {
+  bool save = false, stop = false;
+};
+
+Wishes wishes_of(TrainingRun& run) {
+  Wishes wishes;
+  wishes.stop = run.request.stop && run.request.stop();
+  if (!run.leads()) return wishes;
+  wishes.save = seconds_since(run.saved) > 60 * run.options.watch.checkpoint_minutes;
+  if (wishes.stop || seconds_since(run.looked) < 1) return wishes;
+  run.looked = Clock::now();
+  wishes.stop = std::filesystem::exists(pause_file(run.folder));
+  return wishes;
+}
+
+// Adds the step to the window, and to the counts of the run. Several processes do so with the steps and counts of all,
+// and each gets the wishes of any.
+Wishes take_in(TrainingRun& run, const StepRecord& record) {
+  Wishes wishes = wishes_of(run);
+  run.counts = run.trainer->counts;
+  if (!run.request.processes) {
+    run.window.add(record);
+    return wishes;
+  }
+  StepWindow own;
+  own.add(record);
+  const std::vector<double> sums = own.sums();
+  TrainingCounts& c = run.counts;
+  std::vector<double> all{double(wishes.save), double(wishes.stop), double(c.frames),      double(c.lost),
+                          double(c.given_up),  double(c.bad),       double(c.bad_in_a_row)};
+  const std::size_t before = all.size();
+  all.insert(all.end(), sums.begin(), sums.end());
+  add_up(*run.request.processes, std::span(all));
+  wishes = {all[0] > 0, all[1] > 0};
+  long* counts[] = {&c.frames, &c.lost, &c.given_up, &c.bad, &c.bad_in_a_row};
+  for (std::size_t k = 0; k < std::size(counts); ++k) *counts[k] = static_cast<long>(all[2 + k]);
+  run.window.add(std::span(all).subspan(before), record.adam.learning_rate);
+  return wishes;
+}
+
+// A line of steps.csv. Now and then processes see whether they still have the same weights.
+void add_line(TrainingRun& run) {
+  run.history.steps += run.window.take_line(*run.trainer, run.counts, run.seconds());
+  if (run.request.processes)
+    check_same_weights(*run.request.processes, run.trainer->architecture, run.trainer->network.weights,
+                       fmt::format("training {}, step {}", run.options.name, run.counts.step));
+}
+
 // Returns false if it was stopped before the last step.
 bool run_steps(TrainingRun& run) {
   Trainer& trainer = *run.trainer;
-  Clock::time_point looked = Clock::now();
   while (trainer.counts.step < run.options.steps) {
     const StepRecord record = train_step(trainer);
-    run.window.add(record);
+    const Wishes wishes = take_in(run, record);
     if (record.adam.taken) {
-      if (is_kept_now(run)) write_weights(run, "kept.h5");
-      if (is_due(run, trainer.counts.step, lines_of_a_run))
-        run.history.steps += run.window.take_line(trainer, run.seconds());
+      if (is_kept_now(run) && run.leads()) write_weights(run, "kept.h5");
+      if (is_due(run, trainer.counts.step, lines_of_a_run)) add_line(run);
       if (is_due(run, trainer.counts.step, run.options.watch.measurements)) take_measure(run);
     }
     tell(run);
-    if (seconds_since(run.saved) > 60 * run.options.watch.checkpoint_minutes) save(run);
-    if (run.request.stop && run.request.stop()) return false;
-    if (seconds_since(looked) < 1) continue;
-    looked = Clock::now();
-    if (std::filesystem::exists(pause_file(run.folder))) return false;
+    if (wishes.save) save(run);
+    if (wishes.stop) return false;
   }
   return true;
 }
 
 void begin(TrainingRun& run) {
   make_folder(run.folder);
-  remove_file(pause_file(run.folder));
+  if (run.leads()) remove_file(pause_file(run.folder));
   if (run.request.resume) {
-    run.trainer = read_training_checkpoint(run.folder / "checkpoint.h5", run.options, run.history);
+    run.trainer =
+        read_training_checkpoint(run.folder / "checkpoint.h5", run.options, run.history, run.request.processes);
     run.history.steps = with_columns_of_now(run.history.steps);
   } else {
-    run.trainer = make_trainer(run.options);
+    run.trainer = make_trainer(run.options, run.request.processes);
     run.history.steps = steps_header();
     run.history.measures = measures_header();
   }
   run.seconds_before = run.history.seconds;
-  run.steps_before = run.trainer->counts.step;
+  run.counts = run.trainer->counts;
+  run.steps_before = run.counts.step;
+  if (!run.leads()) return;
   write_file(run.folder / "config.yaml", training_yaml(with_absolute_paths(run.options)));
   run.say(fmt::format("network `{}`: {} parameters, {} passes a frame", run.trainer->architecture.name,
                       parameter_count(run.trainer->architecture), run.trainer->architecture.passes));
+  if (const int count = process_count(*run.trainer); count > 1)
+    run.say(fmt::format("{} processes, {} samples a step", count, count * run.options.optimiser.batch));
   const TrainingWorld& world = run.trainer->maker->world;
   for (const std::string& warning : world.warnings) run.say("warning: " + warning);
   if (std::string who = people_text(world, run.options.samples); !who.empty()) {
@@ -220,10 +279,8 @@ void begin(TrainingRun& run) {
   run.started = run.saved = run.told = Clock::now();
 }
 
-}  // namespace
-
-TrainSummary train(const TrainRequest& request) {
-  restore_standard_arithmetic();
+// The training of this process.
+TrainSummary train_alone(const TrainRequest& request) {
   TrainingRun run(request);
   run.options = read_training(request.config, request.overrides);
   run.folder = request.out.empty() ? std::filesystem::path("out") / "training" / run.options.name : request.out;
@@ -233,15 +290,23 @@ TrainSummary train(const TrainRequest& request) {
   const bool finished = run_steps(run);
   tell(run, true);
   save(run);
-  remove_file(pause_file(run.folder));
+  if (run.leads()) remove_file(pause_file(run.folder));
+  if (request.processes) wait_for_all(*request.processes);
   return {run.folder,
           finished,
-          run.trainer->counts,
+          run.counts,
           run.history.seconds,
           run.history.best_step,
           run.history.best_score,
           run.trainer->teacher ? "mm" : "J",
           run.last};
+}
+
+}  // namespace
+
+TrainSummary train(const TrainRequest& request) {
+  restore_standard_arithmetic();
+  return together(request.processes, [&] { return train_alone(request); });
 }
 
 std::filesystem::path pause_file(const std::filesystem::path& folder) { return folder / "pause"; }

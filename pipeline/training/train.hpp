@@ -17,6 +17,7 @@ struct TrainRequest {
   bool resume = false;                 // continue from the folder's checkpoint
   std::ostream* log = nullptr;         // gets a line now and then
   std::function<bool()> stop;          // called after every step; true ends the run at a checkpoint
+  Processes* processes = nullptr;      // that train together, all with this request; null: this one alone
 };
 
 struct TrainSummary {
@@ -32,7 +33,9 @@ struct TrainSummary {
 
 // Trains a network into a folder: checkpoint.h5, weights.h5 (the last), best.h5 (with the least energy of the measuring
 // roll-out, or with a teacher those nearest to the solver), steps.csv, measures.csv, training.html and config.yaml.
-// `stop` or pause_training stops it at a checkpoint. Throws Error.
+// `stop` or pause_training stops it at a checkpoint. Of several processes the first alone writes files, but for parts
+// of the checkpoint, and says how it goes on; `stop` of any of them stops all. Throws Error, in several processes on
+// all of them: SharedFailure.
 TrainSummary train(const TrainRequest&);
 
 // The summary for people and as one JSON object.

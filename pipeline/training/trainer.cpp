@@ -1,13 +1,17 @@
 #include "pipeline/training/trainer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/network/architecture_text.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "learned/network/widen_weights.hpp"
+#include "pipeline/host/kept_rows.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
+#include "pipeline/processes/learning_sums.hpp"
+#include "pipeline/processes/together.hpp"
 
 namespace selvedge {
 namespace {
@@ -62,8 +66,9 @@ void gather_state(Trainer& trainer, RollingState& state) {
   gather(making.features, trainer.graph, target_accelerations(scene.rest, state.now, making.features), trainer.sums);
 }
 
+// Each process gathers its share.
 void gather_warm_up(Trainer& trainer) {
-  const int states = trainer.options.optimiser.warm_up;
+  const int count = process_count(trainer), states = (trainer.options.optimiser.warm_up + count - 1) / count;
   for (int k = 0; k < std::min(states, rolls_ahead); ++k) ask_for_roll(trainer);
   RollingState state;
   for (int k = 0; k < states; ++k) {
@@ -71,6 +76,9 @@ void gather_warm_up(Trainer& trainer) {
     if (k + rolls_ahead < states) ask_for_roll(trainer);
     gather_state(trainer, state);
   }
+  if (!trainer.processes) return;
+  const FeatureSums<double> own = std::exchange(trainer.sums, empty_sums(trainer.architecture.features));
+  add_statistics(*trainer.processes, own, trainer.sums);
 }
 
 // Accelerations are the last normalised columns.
@@ -134,6 +142,19 @@ void warm_up(Trainer& trainer) {
   silence_cloth_edges(trainer.architecture, trainer.network.weights);
 }
 
+// What states are drawn by. Process 0 has the numbers that one process has.
+RandomStream states_stream(std::uint64_t seed, int rank) {
+  constexpr std::uint64_t ranks_use = 5;  // uses 1 to 4 are those of roll-outs (training_roll.cpp)
+  return rank == 0 ? stream_of(seed, 0) : stream_of(seed * 8 + ranks_use, static_cast<std::uint64_t>(rank));
+}
+
+void check_same_training(const Trainer& trainer) {
+  std::string text = program_key() + training_yaml(trainer.options);
+  for (const InputFile& file : trainer.inputs.files) text += file.name + std::to_string(file.hash);
+  check_same(*trainer.processes, hash_of(text, trainer.inputs.scene), "programs, training files or inputs",
+             "training " + trainer.options.name, "give every process the same program and the same files");
+}
+
 }  // namespace
 
 Architecture trained_architecture(const TrainingOptions& options) {
@@ -163,20 +184,22 @@ Architecture trained_architecture(const TrainingOptions& options) {
   return architecture;
 }
 
-std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
+std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options, Processes* processes) {
   auto trainer = std::make_unique<Trainer>();
   trainer->options = options;
+  trainer->processes = processes;
   trainer->architecture = trained_architecture(options);
   trainer->adam = start_adam(trainer->architecture);
   trainer->sums = empty_sums(trainer->architecture.features);
   trainer->gradients = zero_gradients(trainer->architecture);
-  trainer->random = stream_of(options.seed, 0);
+  trainer->random = states_stream(options.seed, rank_of(*trainer));
   trainer->pool.resize(static_cast<std::size_t>(options.pool.states));
   trainer->maker = std::make_unique<RollMaker>(
       RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
   trainer->maker->world.soft_tissue_folder = cache_folder();
   trainer->inputs.files = files_of(options.samples.people, options.samples.folder);
   trainer->inputs.scene = world_hash(trainer->maker->world);
+  if (processes) check_same_training(*trainer);
   trainer->trained_on = trained_on(options.samples);
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
   if (const TeacherWork work = teacher_work(options.objective); work.any())
@@ -185,8 +208,8 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options) {
   return trainer;
 }
 
-std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
-  auto trainer = make_empty_trainer(options);
+std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options, Processes* processes) {
+  auto trainer = make_empty_trainer(options, processes);
   trainer->network =
       make_training_network(trainer->architecture, first_weights(options, trainer->architecture, trainer->trained_on));
   warm_up(*trainer);
@@ -195,6 +218,9 @@ std::unique_ptr<Trainer> make_trainer(const TrainingOptions& options) {
   for (int k = 0; k < rolls_ahead; ++k) ask_for_roll(*trainer);
   return trainer;
 }
+
+int rank_of(const Trainer& trainer) { return trainer.processes ? trainer.processes->rank() : 0; }
+int process_count(const Trainer& trainer) { return trainer.processes ? trainer.processes->count() : 1; }
 
 void place_network(Trainer& trainer) {
   if (trainer.torch)
@@ -222,7 +248,10 @@ FrameMaking frame_making(const Trainer& trainer) {
 }
 
 void ask_for_roll(Trainer& trainer) {
-  trainer.queue->ask(draw_roll(trainer.options, trainer.maker->world, trainer.counts.rolls++, progress_of(trainer)));
+  const auto rank = static_cast<std::uint64_t>(rank_of(trainer)),
+             count = static_cast<std::uint64_t>(process_count(trainer));
+  const std::uint64_t number = trainer.counts.rolls++ * count + rank;
+  trainer.queue->ask(draw_roll(trainer.options, trainer.maker->world, number, progress_of(trainer)));
 }
 
 }  // namespace selvedge

@@ -8,6 +8,7 @@
 #include "learned/gradients/torch_network.hpp"
 #include "learned/gradients/training_network.hpp"
 #include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/processes/processes.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
 #include "pipeline/training/taught_states.hpp"
@@ -49,11 +50,12 @@ struct Sample {
 // The state of a training, beside its options and requests.
 struct Trainer {
   TrainingOptions options;
+  Processes* processes = nullptr;  // that train the same weights on samples of their own; null: one process
   Architecture architecture;
   TrainingNetwork network;
   std::unique_ptr<TorchNetwork> torch;  // runs `network` if the options name libtorch or a GPU; else null
   AdamState adam;
-  FeatureSums<double> sums;
+  FeatureSums<double> sums;  // of all processes
   RandomStream random;
   TrainingCounts counts;
   std::vector<RollingState> pool;
@@ -75,10 +77,14 @@ struct Trainer {
 Architecture trained_architecture(const TrainingOptions&);
 
 // A trainer before its first step: world, first weights or those of an earlier stage, warm-up statistics, and requests
-// for the first roll-outs. Throws Error for weights of another network.
-std::unique_ptr<Trainer> make_trainer(const TrainingOptions&);
+// for the first roll-outs. Where several processes train, each makes one, and all have the same weights and statistics.
+// Throws Error for weights of another network, and SharedFailure where processes have other options or other inputs.
+std::unique_ptr<Trainer> make_trainer(const TrainingOptions&, Processes* = nullptr);
 // A trainer without weights, statistics and states, for a resumed run.
-std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions&);
+std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions&, Processes* = nullptr);
+
+int rank_of(const Trainer&);        // among the processes; 0 for one
+int process_count(const Trainer&);  // 1 for one
 
 // Passes changed weights to the kernels or to libtorch.
 void place_network(Trainer&);
@@ -96,6 +102,7 @@ void set_guard(const TrainingOptions&, RollingState&);
 
 // The number of requested roll-outs before the pool.
 constexpr int rolls_ahead = 4;
+// Asks for the next roll-out. Process r of n has those of numbers r, r + n, r + 2 n and so on.
 void ask_for_roll(Trainer&);
 
 }  // namespace selvedge

@@ -2,93 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/formats/summed_fields_hdf5.hpp"
 #include "pipeline/host/kept_rows.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "pipeline/processes/together.hpp"
 #include "pipeline/run/resume.hpp"
 
 namespace selvedge {
 namespace {
 
 const h5::FileForm checkpoint_form{"selvedge training checkpoint 2", "training checkpoint", "docs/training.md"};
+const h5::FileForm part_form{"selvedge training checkpoint part 1", "part of a checkpoint", "docs/training.md"};
 
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
-}
+using FieldsOut = h5::SummedFieldsOut;
 
-// A file, and a checksum of its fields so far.
-struct SummedFields {
-  const h5::File& file;
-  std::uint64_t sum = 0;
-
-  void add(const std::string& name, const std::string& bytes) {
-    sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
-  }
-};
-
-struct FieldsOut : SummedFields {
-  void numbers(const std::string& name, const std::vector<double>& values) {
-    h5::write_numbers(file, name, values);
-    add(name, bytes_of(values));
-  }
-  void floats(const std::string& name, const std::vector<float>& values) {
-    file.write_constant(name, H5T_NATIVE_FLOAT, {static_cast<hsize_t>(values.size())}, values.data());
-    add(name, bytes_of(values));
-  }
-  void text(const std::string& name, const std::string& value) {
-    file.write_text(name, value + ".");  // never empty
-    add(name, value);
-  }
-  void points(const std::string& name, const Points& x) {
-    numbers(name, std::vector<double>(x.data(), x.data() + x.size()));
-  }
-};
-
-// Reads what FieldsOut wrote, in the same order.
-struct FieldsIn : SummedFields {
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(what, file.path().string(), "begin the training anew, without --resume");
-  }
-  // A count that was written as a floating-point number.
-  std::int64_t whole(const std::string& name, double value, double most) const {
-    if (!(value >= 0 && value <= most) || value != std::floor(value))
-      fail(fmt::format("`{}` has the value {:g}, not a whole number from 0 to {:g}", name, value, most));
-    return static_cast<std::int64_t>(value);
-  }
-  void need(const std::string& name) const {
-    if (!file.has(name)) fail("the field `" + name + "` is missing");
-  }
-  template <class T>
-  std::vector<T> list(const std::string& name, hid_t type) {
-    need(name);
-    std::vector<T> values(static_cast<std::size_t>(file.shape_of(name, 1)[0]));
-    if (!values.empty()) file.read_all(name, type, {values.size()}, values.data());
-    add(name, bytes_of(values));
-    return values;
-  }
-  std::vector<double> numbers(const std::string& name) { return list<double>(name, H5T_NATIVE_DOUBLE); }
-  std::vector<float> floats(const std::string& name) { return list<float>(name, H5T_NATIVE_FLOAT); }
-  std::string text(const std::string& name) {
-    need(name);
-    std::string value = file.read_text(name);
-    if (value.empty()) fail("the field `" + name + "` is empty");
-    value.pop_back();
-    add(name, value);
-    return value;
-  }
-  Points points(const std::string& name) {
-    const std::vector<double> values = numbers(name);
-    if (values.size() % 3 != 0) fail("the field `" + name + "` has no rows of three");
-    if (!std::ranges::all_of(values, [](double v) { return std::abs(v) <= 1e6; }))
-      fail("the field `" + name + "` has values that are not finite or absurdly large");
-    return Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
-  }
+// A file of ours that is read field by field.
+struct FieldsIn : h5::SummedFieldsIn {
+  explicit FieldsIn(const h5::File& from) : SummedFieldsIn{{from}, "begin the training anew, without --resume"} {}
 };
 
 // The numbers of a roll-out in the order of the file.
@@ -290,23 +229,40 @@ void read_taught(FieldsIn& in, Trainer& trainer) {
   }
 }
 
-void write_counts(FieldsOut& out, const Trainer& trainer, const TrainingHistory& history) {
+// What a process has of its own: the states that it keeps with their targets, and its pool.
+void write_own(FieldsOut& out, const Trainer& trainer) {
+  write_taught(out, trainer.taught);
+  write_pool(out, trainer);
+}
+
+void read_own(FieldsIn& in, Trainer& trainer) {
+  read_taught(in, trainer);
+  read_pool(in, trainer);
+}
+
+void write_counts(FieldsOut& out, const Trainer& trainer) {
   const TrainingCounts& c = trainer.counts;
   out.numbers("counts", {double(c.step), double(c.rolls), double(c.frames), double(c.lost), double(c.given_up),
                          double(c.bad), double(c.bad_in_a_row), double(c.again)});
   out.text("random", fmt::format("{:016x}", trainer.random.state));
+}
+
+void write_history(FieldsOut& out, const TrainingHistory& history) {
   out.text("steps", history.steps);
   out.text("measures", history.measures);
   out.numbers("history", {history.seconds, history.best_score, double(history.best_step)});
 }
 
-void read_counts(FieldsIn& in, Trainer& trainer, TrainingHistory& history) {
+void read_counts(FieldsIn& in, Trainer& trainer) {
   const std::vector<double> c = in.numbers("counts");
   if (c.size() != 8) in.fail("the field `counts` has another length");
   const auto count = [&](std::size_t k) { return in.whole("counts", c[k], 1e15); };
   trainer.counts = {count(0), static_cast<std::uint64_t>(count(1)), count(2), count(3), count(4), count(5), count(6),
                     count(7)};
   trainer.random.state = std::strtoull(in.text("random").c_str(), nullptr, 16);
+}
+
+void read_history(FieldsIn& in, TrainingHistory& history) {
   history.steps = in.text("steps");
   history.measures = in.text("measures");
   const std::vector<double> h = in.numbers("history");
@@ -367,16 +323,98 @@ void check_world(const FieldsIn& in, const RunInputs& before, const RunInputs& n
                 "go on with the version of the program that began the run, or begin anew without --resume");
 }
 
-}  // namespace
+// Where several processes train, what is each one's own lies beside the checkpoint in parts, which are named by rank
+// and checksum. The checkpoint lists the checksums: it fits its parts alone, and those of the one before it stay until
+// it is in its place.
+using Parts = std::vector<std::uint64_t>;  // checksums by rank
 
-void write_training_checkpoint(const std::filesystem::path& path, const Trainer& trainer,
-                               const TrainingHistory& history) {
+std::filesystem::path part_path(const std::filesystem::path& checkpoint, std::size_t rank, std::uint64_t sum) {
+  return checkpoint.parent_path() / fmt::format("{}.rank{}.{:016x}.h5", checkpoint.stem().string(), rank, sum);
+}
+
+// Returns its checksum.
+std::uint64_t write_part(const std::filesystem::path& checkpoint, const Trainer& trainer) {
+  const auto rank = static_cast<std::size_t>(rank_of(trainer));
+  const std::filesystem::path fresh = part_path(checkpoint, rank, 0);
+  std::uint64_t sum = 0;
+  h5::write_form(fresh, part_form, [&](const h5::File& file) {
+    FieldsOut out{{file}};
+    out.numbers("rank", {double(rank)});
+    write_counts(out, trainer);
+    write_own(out, trainer);
+    out.write_checksum();
+    sum = out.sum;
+  });
+  rename_file(fresh, part_path(checkpoint, rank, sum));
+  return sum;
+}
+
+void read_part(const std::filesystem::path& checkpoint, const Parts& parts, Trainer& trainer) {
+  const auto rank = static_cast<std::size_t>(rank_of(trainer));
+  const std::filesystem::path path = part_path(checkpoint, rank, parts[rank]);
+  if (!std::filesystem::exists(path))
+    throw Error("a part of the checkpoint is missing", path.string(),
+                "give all processes one folder, or begin the training anew, without --resume");
+  const h5::Fields form(path, part_form);  // checks the form
+  const h5::File file = h5::File::open(path);
+  FieldsIn in(file);
+  if (in.numbers("rank") != std::vector<double>{double(rank)}) in.fail("is the part of another process");
+  read_counts(in, trainer);
+  read_own(in, trainer);
+  in.check_checksum();
+  if (in.sum != parts[rank]) in.fail("is of another checkpoint than the one beside it");
+}
+
+std::string parts_text(const Parts& parts) {
+  std::string text;
+  for (const std::uint64_t sum : parts) text += fmt::format("{:016x}\n", sum);
+  return text;
+}
+
+// None: the checkpoint is of one process.
+Parts read_parts(const h5::File& file) {
+  Parts parts;
+  if (!file.has("parts")) return parts;
+  std::istringstream lines(file.read_text("parts"));
+  for (std::string line; std::getline(lines, line) && line.size() == 16;)
+    parts.push_back(std::strtoull(line.c_str(), nullptr, 16));
+  return parts;
+}
+
+// Removes parts that no checkpoint lists any more.
+void remove_other_parts(const std::filesystem::path& checkpoint, const Parts& parts) {
+  std::set<std::filesystem::path> kept, found;
+  for (std::size_t rank = 0; rank < parts.size(); ++rank) kept.insert(part_path(checkpoint, rank, parts[rank]));
+  const std::string begin = checkpoint.stem().string() + ".rank";
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(checkpoint.parent_path(), ignored))
+    if (entry.path().filename().string().starts_with(begin)) found.insert(entry.path());
+  for (const std::filesystem::path& path : found)
+    if (!kept.contains(path)) remove_file(path);
+}
+
+void check_process_count(const std::filesystem::path& path, const Parts& parts, const Processes* processes) {
+  const std::size_t then = std::max<std::size_t>(parts.size(), 1),
+                    now = processes ? std::size_t(processes->count()) : 1;
+  if (then == now) return;
+  const std::string again = then == 1 ? "without mpirun" : fmt::format("with `mpirun -n {}`", then);
+  throw Error(
+      fmt::format("the checkpoint is of {}, and {} now: each has states of its own, and the samples of a step "
+                  "would be others",
+                  counted(int(then), "process", "processes"), counted(int(now), "trains", "train")),
+      path.string(),
+      "go on " + again + ", or begin anew, without --resume; `weights` of another run takes weights.h5 of this one");
+}
+
+void write_checkpoint(const std::filesystem::path& path, const Trainer& trainer, const TrainingHistory& history,
+                      const Parts& parts) {
   h5::write_form(path, checkpoint_form, [&](const h5::File& file) {
     FieldsOut out{{file}};
     out.text("config", configuration(trainer.options));
     out.text("inputs", inputs_text(trainer.inputs));
     out.text("trained_on", trained_on_json(trainer.trained_on));
-    write_counts(out, trainer, history);
+    write_counts(out, trainer);
+    write_history(out, history);
     out.floats("weights", all_weights(trainer.architecture, trainer.network.weights));
     const auto write_sums = [&](const std::string& name, const DoubleAccumulators& sums) {
       std::vector<double> values{sums.rows, sums.updates};
@@ -386,25 +424,41 @@ void write_training_checkpoint(const std::filesystem::path& path, const Trainer&
     };
     visit_statistics(write_sums, trainer.sums);
     write_adam(out, trainer);
-    write_taught(out, trainer.taught);
-    write_pool(out, trainer);
-    file.write_text("checksum", fmt::format("{:016x}", out.sum));
+    if (parts.empty())
+      write_own(out, trainer);
+    else
+      out.text("parts", parts_text(parts));
+    out.write_checksum();
   });
 }
 
+}  // namespace
+
+void write_training_checkpoint(const std::filesystem::path& path, const Trainer& trainer,
+                               const TrainingHistory& history) {
+  Parts parts;
+  if (trainer.processes) parts = gathered(*trainer.processes, write_part(path, trainer));
+  if (rank_of(trainer) == 0) write_checkpoint(path, trainer, history, parts);
+  if (trainer.processes) wait_for_all(*trainer.processes);
+  if (rank_of(trainer) == 0) remove_other_parts(path, parts);
+}
+
 std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& path, const TrainingOptions& options,
-                                                  TrainingHistory& history) {
+                                                  TrainingHistory& history, Processes* processes) {
   if (!std::filesystem::exists(path))
     throw Error("there is nothing to resume: no checkpoint", path.string(), "run without --resume");
   const h5::Fields form(path, checkpoint_form);  // checks the form
   const h5::File file = h5::File::open(path);
-  FieldsIn in{{file}};
+  FieldsIn in(file);
   check_configuration(in, options);
+  const Parts parts = read_parts(file);
+  check_process_count(path, parts, processes);
   const RunInputs before = checked_inputs(in, options);
-  auto trainer = make_empty_trainer(options);
+  auto trainer = make_empty_trainer(options, processes);
   check_world(in, before, trainer->inputs);
   trainer->trained_on = read_trained_on(in.text("trained_on"), path.string() + ": trained_on");
-  read_counts(in, *trainer, history);
+  read_counts(in, *trainer);
+  read_history(in, history);
   NetworkWeights weights = blank_weights(trainer->architecture);
   set_weights(in, trainer->architecture, in.floats("weights"), weights);
   const auto read_sums = [&](const std::string& name, DoubleAccumulators& sums) {
@@ -419,9 +473,12 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   visit_statistics(read_sums, trainer->sums);
   trainer->adam = read_adam(in, trainer->architecture);
   trainer->network = make_training_network(trainer->architecture, std::move(weights));
-  read_taught(in, *trainer);
-  read_pool(in, *trainer);
-  if (fmt::format("{:016x}", in.sum) != file.read_text("checksum")) in.fail("its checksum is wrong: it is damaged");
+  if (parts.empty())
+    read_own(in, *trainer);
+  else
+    in.text("parts");
+  in.check_checksum();
+  if (!parts.empty()) read_part(path, parts, *trainer);
   trainer->torch = torch_network_for(options.device, trainer->architecture, trainer->network.weights);
   return trainer;
 }

@@ -11,6 +11,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/unite_graphs.hpp"
+#include "pipeline/processes/learning_sums.hpp"
 
 namespace selvedge {
 namespace {
@@ -110,12 +111,14 @@ void make_graphs(Trainer& trainer, const FrameMaking& making) {
     if (keeps_states(trainer) && sample.record.bad.empty()) sample.kept = taught_copy(*sample.state, sample.graph);
   });
   if (!trainer.options.optimiser.freeze_statistics && trainer.options.weights.empty()) {
+    FeatureSums<double> of_step = empty_sums(making.features);  // where others add theirs
     for (const Sample& sample : trainer.samples) {
       if (!sample.record.bad.empty() || sample.again) continue;
       const RollingState& state = *sample.state;
       gather(making.features, sample.graph, target_accelerations(state.roll.scene->rest, state.now, making.features),
-             trainer.sums);
+             trainer.processes ? of_step : trainer.sums);
     }
+    if (trainer.processes) add_statistics(*trainer.processes, of_step, trainer.sums);
     freeze_statistics(trainer.sums, tables);
   }
   for_samples(trainer.samples, [&](Sample& sample) {
@@ -220,11 +223,11 @@ AdamOptions adam_options(const Trainer& trainer) {
   return adam;
 }
 
-// Forward, losses, backward and the optimiser.
-AdamReport learn(Trainer& trainer, const FrameMaking& making) {
+// Forward, losses and backward. Returns the number of good samples, of which the gradients are the mean.
+int take_gradients(Trainer& trainer, const FrameMaking& making) {
   make_graphs(trainer, making);
   const Graph* graph = forward_with_losses(trainer, making);
-  if (!graph) return {.taken = false};
+  if (!graph) return 0;
   FeatureRows d_output(graph->cloth_nodes, 3);
   Eigen::Index next = 0;
   const auto count = static_cast<float>(good_graphs(trainer.samples).size());
@@ -234,6 +237,15 @@ AdamReport learn(Trainer& trainer, const FrameMaking& making) {
     next += sample.graph.cloth_nodes;
   }
   backward(trainer, *graph, d_output);
+  return static_cast<int>(count);
+}
+
+// Gradients of this process and of all others, and the optimiser.
+AdamReport learn(Trainer& trainer, const FrameMaking& making) {
+  int samples = take_gradients(trainer, making);
+  if (trainer.processes)
+    samples = average_gradients(*trainer.processes, trainer.architecture, samples, trainer.gradients);
+  if (samples == 0) return {.taken = false};
   const AdamReport adam =
       adam_step(trainer.architecture, adam_options(trainer), trainer.gradients, trainer.adam, trainer.network.weights);
   if (adam.taken) place_network(trainer);

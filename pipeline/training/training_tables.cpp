@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/host/csv_columns.hpp"
 
 namespace selvedge {
 
@@ -30,6 +30,29 @@ void StepWindow::add(const StepRecord& record) {
   }
 }
 
+std::vector<double> StepWindow::sums() const {
+  std::vector<double> all{static_cast<double>(count_), static_cast<double>(bad_), sum_, norm_, scale_};
+  for (std::size_t k = 0; k < loss_rows().size(); ++k) {
+    const Term term = k < terms_.size() ? terms_[k] : Term{};
+    all.insert(all.end(), {term.value, term.gradient});
+  }
+  return all;
+}
+
+void StepWindow::add(std::span<const double> sums, double learning_rate) {
+  rate_ = learning_rate;
+  terms_.resize(loss_rows().size());
+  count_ += static_cast<int>(sums[0]);
+  bad_ += static_cast<int>(sums[1]);
+  sum_ += sums[2];
+  norm_ += sums[3];
+  scale_ += sums[4];
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    terms_[k].value += sums[5 + 2 * k];
+    terms_[k].gradient += sums[6 + 2 * k];
+  }
+}
+
 std::string steps_header() {
   std::string line =
       "step,progress,seconds,learning_rate,samples,bad,lost,sum,gradient_norm,clip_scale,"
@@ -51,11 +74,11 @@ std::string with_columns_of_now(const std::string& steps_csv) {
   return all;
 }
 
-std::string StepWindow::take_line(const Trainer& trainer, double seconds) {
+std::string StepWindow::take_line(const Trainer& trainer, const TrainingCounts& counts, double seconds) {
   const double n = std::max(count_, 1);
-  std::string line = fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g},{:.4g}", trainer.counts.step,
-                                 progress_of(trainer), seconds, rate_, count_, bad_, trainer.counts.lost, sum_ / n,
-                                 norm_ / n, scale_ / n, trainer.teacher ? trainer.teacher->tally().rate() : 0);
+  std::string line = fmt::format("{},{:.4f},{:.1f},{:.4g},{},{},{},{:.6g},{:.4g},{:.4g},{:.4g}", counts.step,
+                                 progress_of(trainer), seconds, rate_, count_, bad_, counts.lost, sum_ / n, norm_ / n,
+                                 scale_ / n, trainer.teacher ? trainer.teacher->tally().rate() : 0);
   terms_.resize(loss_rows().size());
   for (const Term& term : terms_) line += fmt::format(",{:.6g},{:.4f}", term.value / n, term.gradient / n);
   const double mean = mean_sum();

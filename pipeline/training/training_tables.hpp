@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,13 @@ namespace selvedge {
 class StepWindow {
  public:
   void add(const StepRecord&);
+  // The sums so far, to be added over processes, and such sums added to these.
+  std::vector<double> sums() const;
+  void add(std::span<const double> sums, double learning_rate);
   // Mean of the sums of losses since the last line, or in the last line if there are none since [J].
   double mean_sum() const { return count_ > 0 ? sum_ / count_ : last_mean_; }
-  // Returns the line and starts the next one.
-  std::string take_line(const Trainer&, double seconds);
+  // Returns the line and starts the next one. `counts`: of all processes.
+  std::string take_line(const Trainer&, const TrainingCounts& counts, double seconds);
 
  private:
   struct Term {

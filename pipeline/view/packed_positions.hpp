@@ -8,11 +8,12 @@
 
 namespace selvedge {
 
-// Positions of a surface over frames as few bytes: whole steps of one grid, each predicted from the frames before and
-// from the vertex before it; what is left is written in Rice codes (R. F. Rice, JPL 79-22, 1979). data.js reads them.
+// Positions of a surface over frames in few bytes: whole steps of one grid, each predicted from the frames before and
+// from the vertex before it. Differences from the prediction are Rice codes (R. F. Rice, JPL 79-22, 1979). data.js
+// reads them.
 //
 // A frame has, for x, y and z in turn: a bit for the prediction in time (0: as in the frame before, 1: on the line
-// through the two frames before), a bit for whether a vertex's rest is told against that of the vertex before it, five
+// through the two frames before), a bit for whether differences are relative to that of the vertex before, five
 // bits for the code's parameter k, then a code a vertex. Bits are read from the highest of a byte on.
 struct PackedPositions {
   double step = 0;  // of the grid [m]

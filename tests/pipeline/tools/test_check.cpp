@@ -139,7 +139,7 @@ TEST_CASE("a rest mesh of other faces is refused") {
   REQUIRE_THROWS_AS(check({folder.path / "a.obj", folder.path / "b.obj", {}}), Error);
 }
 
-TEST_CASE("FCL's opinion stands beside the audit's") {
+TEST_CASE("FCL's result stands beside the audit's") {
   const fake::Folder folder("check_fcl");
   write_text(folder.path / "crossing.obj", crossing);
   write_text(folder.path / "apart.obj", apart);

@@ -10,7 +10,7 @@
 #include "learned/steppers/learned_state.hpp"
 #include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/training/simulate_frames.hpp"
 #include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"

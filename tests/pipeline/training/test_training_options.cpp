@@ -6,8 +6,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
-#include "pipeline/training/csv_charts.hpp"
 #include "pipeline/training/objective_options.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "pipeline/training/training_tables.hpp"
@@ -84,7 +84,7 @@ TEST_CASE("training tables: every term has its columns, also in a history of oth
   for (const LossRow& row : loss_rows()) record.samples[0].terms.push_back({&row, row.name, 1, 2, 3});
   window.add(record);
   const Trainer trainer;
-  const std::string now = steps_header() + window.take_line(trainer, 1);
+  const std::string now = steps_header() + window.take_line(trainer, trainer.counts, 1);
   const CsvColumns table(now);
   for (const LossRow& row : loss_rows()) CHECK(table[row.name] == std::vector<double>{2});
   CHECK(with_columns_of_now(now) == now);

@@ -1,4 +1,4 @@
-#include "learned/graph/carried_frames.hpp"
+#include "collision/geometry/turned_frames.hpp"
 
 namespace selvedge {
 namespace {
