@@ -24,6 +24,12 @@ std::vector<TaughtState*> TaughtStates::draw(RandomStream& random, int count) co
   return drawn;
 }
 
+std::shared_future<TeacherStep> made_target(Points x) {
+  std::promise<TeacherStep> made;
+  made.set_value({std::move(x), nullptr, ""});
+  return made.get_future().share();
+}
+
 std::unique_ptr<TaughtState> taught_copy(const RollingState& from, Graph raw) {
   auto copy = std::make_unique<TaughtState>();
   RollingState& to = copy->state;
@@ -33,7 +39,7 @@ std::unique_ptr<TaughtState> taught_copy(const RollingState& from, Graph raw) {
   to.pass = from.pass;
   to.now = from.now;
   to.over = false;
-  to.taught = from.taught;
+  to.taught = made_target(from.taught.get().x);  // the future itself would keep the solver of the roll-out
   to.body_left_out = from.body_left_out;
   to.found = from.found;
   copy->raw = std::move(raw);

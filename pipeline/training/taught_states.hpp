@@ -27,6 +27,9 @@ struct TaughtStates {
   std::vector<TaughtState*> draw(RandomStream&, int count) const;
 };
 
+// A target that is there, V x 3 [m].
+std::shared_future<TeacherStep> made_target(Points x);
+
 // A copy of what losses and network need of a state that has a target, without the body and the cloth of later frames.
 std::unique_ptr<TaughtState> taught_copy(const RollingState&, Graph raw);
 
