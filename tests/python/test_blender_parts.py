@@ -220,11 +220,14 @@ def test_the_verdict():
 
 def test_the_zip(tmp_path):
     pack.pack(tmp_path / "a.zip")
-    for file in pack.packed():
-        file.touch()
     pack.pack(tmp_path / "deep" / "b.zip")
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "deep" / "b.zip").read_bytes()
-    names = zipfile.ZipFile(tmp_path / "a.zip").namelist()
+    entries = zipfile.ZipFile(tmp_path / "a.zip").infolist()
+    assert {(one.date_time, one.compress_type, one.external_attr >> 16) for one in entries} == {
+        ((1980, 1, 1, 0, 0, 0), zipfile.ZIP_STORED, 0o644)
+    }  # and neither today, nor what a library packs, nor the rights of a checkout
+    names = [one.filename for one in entries]
+    assert names == sorted(names)
     assert "selvedge_cloth/blender_manifest.toml" in names and "selvedge_cloth/__init__.py" in names
     assert "selvedge_cloth/LICENSE" in names and "selvedge_cloth/pack.py" not in names
     for file in addon.FOLDER.glob("*.py"):
