@@ -19,11 +19,11 @@ Points in_file(const Points& x, const MeshFrame& frame) {
   return turned;
 }
 
-// Nearly as wide as it is long, so that most of it is as near to the body with the other axis up.
+// So wide that it is about as near to the body with the other axis up.
 fake::Piece flared_skirt(const BodyModel& body) {
   fake::Piece skirt = fake::skirt(body, -0.46, 0.11, 0.02, 40, 16);
   for (Eigen::Index v = 0; v < skirt.x.rows(); ++v)
-    for (const int k : {0, 2}) skirt.x(v, k) *= 1 + (k == 0 ? 2.5 : 3.5) * (0.11 - skirt.x(v, 1));
+    for (const int k : {0, 2}) skirt.x(v, k) *= 1 + (k == 0 ? 1.5 : 2.0) * (0.11 - skirt.x(v, 1));
   return skirt;
 }
 
