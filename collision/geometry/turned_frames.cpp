@@ -1,6 +1,6 @@
 #include "collision/geometry/turned_frames.hpp"
 
-#include "learned/graph/area_normal.hpp"
+#include "collision/geometry/area_normal.hpp"
 
 namespace selvedge {
 namespace {

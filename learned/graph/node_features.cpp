@@ -1,6 +1,6 @@
 #include "learned/graph/node_features.hpp"
 
-#include "learned/graph/area_normal.hpp"
+#include "collision/geometry/area_normal.hpp"
 #include "learned/graph/embedding.hpp"
 #include "learned/graph/node_columns.hpp"
 

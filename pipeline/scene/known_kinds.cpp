@@ -9,9 +9,9 @@
 #include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
-#include "pipeline/formats/carried_model_hdf5.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/weights/carried_model_hdf5.hpp"
 
 namespace selvedge {
 namespace {

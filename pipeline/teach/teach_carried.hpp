@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <ostream>
 
-#include "pipeline/formats/carried_model_hdf5.hpp"
 #include "pipeline/teach/taught_clip.hpp"
+#include "pipeline/weights/carried_model_hdf5.hpp"
 
 namespace selvedge {
 

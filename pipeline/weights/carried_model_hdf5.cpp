@@ -1,4 +1,4 @@
-#include "pipeline/formats/carried_model_hdf5.hpp"
+#include "pipeline/weights/carried_model_hdf5.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,7 @@
 namespace selvedge {
 namespace {
 
-const h5::FileForm carried_form{"selvedge carried 1", "coefficients of the carried guess",
-                                "docs/comparison.md"};
+const h5::FileForm carried_form{"selvedge carried 1", "coefficients of the carried guess", "docs/comparison.md"};
 constexpr double largest_coefficient = 1e6;
 
 std::vector<std::string> term_names() { return {carried_term_names().begin(), carried_term_names().end()}; }
