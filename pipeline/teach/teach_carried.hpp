@@ -14,7 +14,7 @@ struct TeachRequest {
   std::vector<std::string> clips, held_out;  // of the scene's body: fitted on, and measured on
   std::filesystem::path out;                 // file of coefficients (HDF5)
   bool own = false;                          // true: a set of coefficients for each vertex
-  int rounds = 2;                            // in which the solver corrects states that the fitted stepper reaches
+  int rounds = 1;                            // in which the solver corrects states that the fitted stepper reaches
   std::ostream* log = nullptr;               // progress; may be null
   TeachStop stop = {};
 };
