@@ -11,11 +11,11 @@
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
-#include "pipeline/formats/summed_fields_hdf5.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/processes/together.hpp"
 #include "pipeline/run/resume.hpp"
+#include "pipeline/run/summed_fields_hdf5.hpp"
 
 namespace selvedge {
 namespace {

@@ -82,7 +82,9 @@ class Running {
   bool until(const std::function<bool()>& holds, double seconds = 120) const {
     const Clock::time_point begin = Clock::now();
     while (!holds()) {
-      if (seconds_since(begin) > seconds || waitpid(process_, nullptr, WNOHANG | WNOWAIT) != 0) return false;
+      siginfo_t ended{};
+      waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT);
+      if (seconds_since(begin) > seconds || ended.si_pid != 0) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return true;
