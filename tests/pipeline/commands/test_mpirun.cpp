@@ -65,6 +65,7 @@ class Running {
  public:
   Running(const fake::Folder& folder, int processes, const std::string& arguments) : folder_(folder) {
     const std::string command = train_command(folder, processes, arguments) + " >stdout 2>stderr </dev/null";
+    std::filesystem::remove(folder.path / "stderr");  // of the run before
     process_ = fork();
     if (process_ != 0) return;
     setpgid(0, 0);
