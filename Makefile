@@ -9,7 +9,7 @@ CONFIGURE := $(if $(CI),-DSELVEDGE_WERROR=ON)
 SOURCES = git ls-files '*.cpp' '*.hpp'
 PROGRAM := build/release/selvedge
 
-PACKAGES_release := build suitesparse fcl viewer plots test python
+PACKAGES_release := build suitesparse fcl viewer test python
 ADDED_release := cmake/add-python.sh build/release
 PACKAGES_dev := $(PACKAGES_release)
 PACKAGES_asan := $(PACKAGES_release)
@@ -17,7 +17,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
+.PHONY: help program demo blender with-blender test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -36,7 +36,6 @@ demo: program  ## Build the program, simulate configs/demo.yaml by three stepper
 	@$(PROGRAM) view out/demo/conventional out/demo/learned out/demo/hybrid --out out/demo/view.html
 
 validate: program  ## Physics with known answers: a table and plots, and out/validate/*
-	@cmake/install-packages.sh plots
 	@$(PROGRAM) validate --out out/validate
 
 bench: program  ## Run the benchmark family: a table, and out/bench/*.json
@@ -56,11 +55,13 @@ wardrobe: program  ## Every garment by code through every clip: a table, and out
 	@$(PROGRAM) gather $(WARDROBE) --out out/wardrobe
 
 compare: program  ## Compare the conventional stepper's settings: tables and plots of error against run time, and out/compare/*
-	@cmake/install-packages.sh plots
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
+everything: with-blender test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
+# Blender and a display for it, so that tests and tutorials do not leave out what needs them.
+with-blender:
+	@cmake/install-packages.sh blender
 fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
 	@cmake/install-packages.sh build fuzz
 	@$(MAKE) --no-print-directory build/fuzz/configured
@@ -124,6 +125,9 @@ tutorials: program  ## Every command and picture of docs/tutorials and docs/gall
 	  cmake --build --preset release --parallel $(JOBS) --target _selvedge
 	@python=build/release/venv/bin/python; [ -x $$python ] || python=/usr/bin/python3; \
 	  $$python docs/tutorials/run.py $(PROGRAM) build/release/python $(PAGES)
+
+blender:  ## The add-on for Blender: out/blender/selvedge_cloth.zip
+	@python3 pipeline/blender/pack.py out/blender/selvedge_cloth.zip
 
 docs:  ## The site of docs/, with references of Python and C++: out/site
 	@cmake/install-packages.sh docs

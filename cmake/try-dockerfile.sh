@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: cmake/try-dockerfile.sh FOLDER
-# Runs the commands of Dockerfile in an empty Debian folder made by debootstrap, then the program in it on a scene of one
-# sheet. Needs root, debootstrap and Debian's package index. CACHE names a compile cache to copy in (ccache's folder).
+# Runs the commands of Dockerfile in an empty Debian folder made by debootstrap, then the program in it on a scene of
+# one sheet. Needs root, debootstrap and Debian's package index. CACHE names a compile cache to copy in (ccache's folder).
 # What stays is FOLDER, to look into; a mount of this machine's /proc is removed.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
@@ -14,9 +14,9 @@ debootstrap --variant=minbase "$suite" "$work" http://deb.debian.org/debian >"$w
 # What this machine needs to reach its package index.
 cp -r /etc/apt/apt.conf.d /etc/apt/sources.list.d "$work/etc/apt/" 2>/dev/null || true
 cp /etc/resolv.conf /etc/hosts "$work/etc/" 2>/dev/null || true
+trap 'umount "$work/proc" "$work/dev" 2>/dev/null || true' EXIT
 mount --bind /proc "$work/proc"
 mount --bind /dev "$work/dev"
-trap 'umount "$work/proc" "$work/dev"' EXIT
 
 inside=(env -i PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin HOME=/root DEBIAN_FRONTEND=noninteractive)
 for name in http_proxy https_proxy no_proxy; do [[ -z "${!name:-}" ]] || inside+=("$name=${!name}"); done

@@ -36,7 +36,8 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
     }
     const RunCommand run = row.add(command);
     const auto json = std::make_shared<bool>(false);
-    command.add_flag("--json", *json, "one JSON object on standard output, people's text on standard error");
+    command.add_flag("--json", *json,
+                     "print one JSON object to standard output, and text for people to standard error");
     command.callback([&chosen, json, run] { chosen = [=] { return run(*json); }; });
   }
 }

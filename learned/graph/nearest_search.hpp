@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/geometry/parallel.hpp"
 #include "collision/search/bvh_traversal.hpp"
 
 namespace selvedge {
@@ -115,8 +116,7 @@ void find_nearest_of_all(const Points& points, const Bvh& groups, const Bvh& ite
                          std::vector<int>& last, SquaredOf&& squared_of) {
   const int count = static_cast<int>(groups.leaves.size());
   last.resize(static_cast<std::size_t>(points.rows()), -1);
-#pragma omp parallel for schedule(dynamic, 16)
-  for (int leaf = 0; leaf < count; ++leaf) {
+  parallel_for(count, 16, [&](int leaf) {
     const auto& together = groups.leaves[static_cast<std::size_t>(leaf)].item;
     NearGroup group;
     for (const int v : together) {
@@ -129,7 +129,7 @@ void find_nearest_of_all(const Points& points, const Bvh& groups, const Bvh& ite
     find_nearest(items, group, squared_of);
     for (int i = 0; i < group.size; ++i)
       last[static_cast<std::size_t>(together[i])] = group.best[static_cast<std::size_t>(i)].item;
-  }
+  });
 }
 
 }  // namespace selvedge

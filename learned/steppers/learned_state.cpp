@@ -1,6 +1,6 @@
 #include "learned/steppers/learned_state.hpp"
 
-#include "learned/graph/carried_frames.hpp"
+#include "collision/geometry/turned_frames.hpp"
 #include "physics/energies/external.hpp"
 #include "physics/steppers/carried_stepper.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/contact/contact_pairs.hpp"
 #include "collision/contour/find_contours.hpp"
 #include "collision/untangle/caught.hpp"
 #include "collision/untangle/find_exemption.hpp"
@@ -10,6 +11,7 @@
 #include "collision/untangle/untangle.hpp"
 #include "collision/untangle/world_sheets.hpp"
 #include "physics/recovery/balanced_motion.hpp"
+#include "physics/recovery/lifted_off.hpp"
 
 namespace selvedge {
 namespace {
@@ -95,6 +97,20 @@ std::vector<Separation> pushes_along(const Points& wanted, const std::vector<cha
   return pushes;
 }
 
+// The pushes of vertices that are lifted off an obstacle, by at most `reach` [m].
+void add_lifts(const Points& lifts, double reach, std::vector<Separation>& pushes) {
+  for (int v = 0; v < lifts.rows(); ++v) {
+    const double length = row(lifts, v).norm();
+    if (length == 0) continue;
+    Separation& push = pushes.emplace_back();
+    push.vertex[0] = v;
+    push.weight[0] = 1;
+    push.direction = row(lifts, v) / length;
+    push.least = std::min(length, reach);
+    push.count = 1;
+  }
+}
+
 // The number of pairs of the cloth's triangles that cross each other.
 std::size_t pairs_within_cloth(const ContactWorld& world, const Points& nodes) {
   IntersectionCache cache;
@@ -114,15 +130,35 @@ int iterations_for(const ContactWorld& world, const Points& nodes, double reach,
   return useful < options.iterations ? static_cast<int>(useful) : options.iterations;
 }
 
-// Moves vertices that would newly go through an obstacle back to `from`. Returns what is tangled then.
+// 1 for cloth vertices of pairs with an obstacle that meet in the motion x0 -> x1 and were clean before.
+std::vector<char> meeting_obstacles(const ContactWorld& world, const Exemption& before, const Points& x0,
+                                    const Points& x1) {
+  ContactWorld bodies = world;
+  bodies.self = false;
+  PairSearch search(bodies);
+  search.leave_out(&before);
+  std::vector<NodePair> pairs;
+  search.find(x0, x1, 0, pairs);
+  std::vector<char> meeting(world.cloth->vertex_count, 0);
+  for (const NodePair& pair : pairs) {
+    if (!time_of_contact(pair.kind, corners(pair, x0), corners(pair, x1), 0)) continue;
+    for (const int node : pair.nodes)
+      if (world.is_cloth(node)) meeting[node] = 1;
+  }
+  return meeting;
+}
+
+// Moves vertices that would newly go through an obstacle, in the motion or at its end, back to `from`. Returns what is
+// tangled then.
 Exemption stop_at_obstacles(const ContactWorld& world, const Exemption& before, const Points& from, Points& nodes) {
   for (;;) {
+    const std::vector<char> meeting = meeting_obstacles(world, before, from, nodes);
     Exemption left = find_exemption(world, nodes);
     bool stopped = false;
-    for (std::size_t v = 0; v < left.body.size(); ++v) {
-      const auto at = static_cast<Eigen::Index>(v);
-      if (!left.body[v] || (!before.body.empty() && before.body[v]) || nodes.row(at) == from.row(at)) continue;
-      nodes.row(at) = from.row(at);
+    for (Eigen::Index v = 0; v < std::ssize(meeting); ++v) {
+      const bool tangled = !left.body.empty() && left.body[v] && (before.body.empty() || !before.body[v]);
+      if ((!tangled && !meeting[v]) || nodes.row(v) == from.row(v)) continue;
+      nodes.row(v) = from.row(v);
       stopped = true;
     }
     if (!stopped) return left;
@@ -160,8 +196,9 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
     options.second_rule = false;
   }
   options.iterations = iterations_for(world, nodes, reach, before, options, limits);
+  const Points lifted = lifted_off(world, nodes, before.body, options.held, options.gap);
   const UntangleResult parted =
-      (budget ? *budget : ample).untangle(*world.cloth, from, std::span(sheets.views).subspan(1), options);
+      (budget ? *budget : ample).untangle(*world.cloth, lifted, std::span(sheets.views).subspan(1), options);
   const std::vector<char> still_tangled = tangled_at(world, nodes, parted);
   const Points whole = parted.x - from;
   Points wanted = whole;
@@ -171,10 +208,11 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
   for (int halving = 0; halving <= limits.max_halvings; ++halving, reach /= 2) {
     std::vector<Separation> separations =
         pushes_along(whole, still_tangled, sheets, limits.negligible_move * parted.mean_edge, reach);
+    add_lifts(lifted - from, reach, separations);
     drop_let_through(options.let_through, separations);
     Points moved = nodes;
     moved.topRows(n) += balanced_motion(*world.cloth, inverse_mass, separations, wanted, reach);
-    Exemption left = stop_at_obstacles(world, before, from, moved);
+    Exemption left = stop_at_obstacles(world, before, nodes, moved);
     if (before.self.empty() ? !left.self.empty() : pairs_within_cloth(world, moved) > pairs) continue;
     nodes = std::move(moved);
     recovery = {std::move(left), std::move(separations), parted.moved == 0, trapped};

@@ -12,6 +12,8 @@ constexpr double tolerated_part = 0.3;  // of the unit of energy; demo, walks, w
 constexpr double slight = 0.05;         // of it: smaller gains in driven scenes are not compared with the work
 constexpr double earth = 9.81;          // for the unit of energy without gravity [m/s2]
 
+double elastic_part(const Energies& e) { return e.membrane + e.bending + e.springs; }
+
 double gained_before(const State& state) {
   const MemoryRows* rows = find_rows(state.memory, block, 1);
   return rows && rows->cols() == 1 ? (*rows)(0, 0) : 0;
@@ -52,7 +54,9 @@ EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, Stat
   const Energies before = energies_of(from, drive.acceleration), after = energies_of(to, drive.acceleration);
   const double gained = gained_before(from), weight = terms_.masses.sum() * std::max(earth, drive.acceleration.norm());
   const double unit = std::max(0.0, before.total() - before.gravity - gained) + weight * edge_length_;
-  EnergyGain found{.gain = after.total() - before.total(), .tolerated = tolerated_part * unit};
+  EnergyGain found{.gain = after.total() - before.total(),
+                   .elastic = elastic_part(after) - elastic_part(before),
+                   .tolerated = tolerated_part * unit};
   const bool driven = is_driven(scene_, from, to, drive);
   if (driven && found.gain > 0) found.work = found.gain > slight * unit ? work_of(from, to, drive) : found.gain;
   const double nowhere = gained + (found.gain > 0 ? std::max(found.gain - found.work, 0.0) : found.gain);

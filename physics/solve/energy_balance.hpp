@@ -9,6 +9,7 @@ namespace selvedge {
 // The change of the cloth's energy in a step [J]: kinetic, elastic and of gravity.
 struct EnergyGain {
   double gain = 0;
+  double elastic = 0;    // its part in membranes, bending and springs
   double work = 0;       // bound of the work of pins, obstacles and wind (work.hpp); 0 where it is not needed
   double nowhere = 0;    // gain beyond `work`, in this and earlier steps, minus losses since
   double tolerated = 0;  // how much of `nowhere`

@@ -31,9 +31,10 @@ struct GuardMeasures {
   double stretch = 1, stretch_before = 1;
   double energy_growth = 0;
   double patch_acceleration = 0;  // [m/s2]
+  double unexplained_flight = 0;  // [m/s2]
   double imbalance = 0;           // [m]
   double decrement = 0;
-  double in_contact = 0;  // share of free vertices that touch something: left out of the last three measures
+  double in_contact = 0;  // share of free vertices that touch something: left out of the last four measures
 };
 
 // Judges proposed steps. Caches, and references to the scene.

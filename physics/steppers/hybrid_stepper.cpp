@@ -212,12 +212,16 @@ Verdict HybridStepper::propose_within_budget(Work& work) {
 }
 
 // Whether an admitted or refined step gains energy from nowhere. The stepper that made it may have said so already. An
-// admitted proposal is judged again here, since a network knows only some of the scene's forces.
+// admitted proposal is judged again here, since a network knows only some of the scene's forces. The bound of what the
+// world gave grows with a proposal's own forces where pins, bodies or wind move, so that the growth of its elastic
+// energy is bounded too: the mode `response` has not judged it before.
 bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
   if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
   if (work.report.doubts.energy_gain) return true;
   const Timed timed(work.report.seconds.guard);
-  return verdict == Verdict::admitted && energy_(work.from, work.drive, work.to).from_nowhere();
+  if (verdict != Verdict::admitted) return false;
+  const EnergyGain found = energy_(work.from, work.drive, work.to);
+  return found.from_nowhere() || found.elastic > guard_.options.energy_growth * guard_.unit_energy;
 }
 
 void HybridStepper::take_parent_step(Work& work) {

@@ -36,6 +36,6 @@ std::size_t number_of(const CellList& list, const std::string& name) {
 }
 
 // The median row of the wardrobe took 65 us a vertex and frame with its audits (docs/garments/wardrobe.csv).
-double rough_seconds(int vertices, int frames) { return 65e-6 * vertices * frames; }
+double rough_seconds(int vertices, double frames) { return 65e-6 * vertices * frames; }
 
 }  // namespace selvedge

@@ -20,12 +20,12 @@ struct WorkCell {
 };
 
 struct CellWatch {
-  std::ostream* log = nullptr;  // for what a cell says in its course; null: nobody
+  std::ostream* log = nullptr;  // gets progress messages of the cell; null: none
   std::function<bool()> stop;   // asked after every frame; true ends the cell, which then leaves no result
   bool times_here = false;      // results of other machines (machine_name.hpp) do not count
 };
 
-// What came of a cell, beside the files in its folder.
+// The result of a cell, beside the files in its folder.
 struct CellResult {
   std::string row;              // a JSON object with what the tables are made of
   bool passed = true;           // its row
@@ -58,8 +58,8 @@ struct CellList {
   std::function<std::optional<CellResult>(std::size_t, const std::filesystem::path& folder, const CellWatch&)> run;
   // Writes tables and pages of these results, in the list's order, into the folder of all cells.
   std::function<CellTables(const std::vector<CellRecord>&, const std::filesystem::path& out)> gather;
-  // True: a cell keeps parts of itself with keys of their own. The folder then has what a stopped try on this machine,
-  // or an earlier result, has left.
+  // True: a cell keeps parts of its result, each with a key of its own. The folder then has the files of a stopped try
+  // on this machine, or of an earlier result.
   bool keeps_parts = false;
 };
 
@@ -74,10 +74,10 @@ void number_equal_names(std::vector<std::string>& names);
 std::size_t number_of(const CellList&, const std::string& name);
 
 // Time that frames of so many vertices take, roughly, on one core [s].
-double rough_seconds(int vertices, int frames);
+double rough_seconds(int vertices, double frames);
 
 std::string cell_record_json(const CellRecord&);
-// Absent where the text is none.
+// Absent if the text is not a record.
 std::optional<CellRecord> read_cell_record(const std::string& json);
 
 }  // namespace selvedge

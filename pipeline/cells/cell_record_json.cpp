@@ -31,7 +31,7 @@ std::optional<CellRecord> read_cell_record(const std::string& text) {
     if (json.contains("positions_hash"))
       record.result.positions =
           std::strtoull(json.at("positions_hash").get_ref<const std::string&>().c_str(), nullptr, 16);
-    record.result.row = json_text(json.at("row"));
+    record.result.row = json_text(json.at("row").get_ref<const Json::object_t&>());
   });
 }
 

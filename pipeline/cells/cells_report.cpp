@@ -31,6 +31,11 @@ std::string cells_table(const std::vector<WorkCell>& cells) {
   return text + fmt::format("{} cells, {:.1f} h of one core, roughly\n", cells.size(), sum / 3600);
 }
 
+std::string cell_names_json(const CellList& list) {
+  return json_text(
+      {{"file", list.file.string()}, {"kind", list.kind}, {"program", list.program}, {"names", list.names}});
+}
+
 std::string cells_json(const CellList& list, const std::vector<WorkCell>& cells) {
   return json_text({{"file", list.file.string()},
                     {"kind", list.kind},

@@ -1,7 +1,7 @@
 #include "pipeline/cells/do_cells.hpp"
 
 #include <algorithm>
-#include <memory>
+#include <optional>
 #include <system_error>
 
 #include "collision/geometry/error.hpp"
@@ -17,11 +17,31 @@ namespace fs = std::filesystem;
 
 constexpr const char* record_file = "cell.json";
 
-// Where this machine works on a cell. Other machines have other folders: not every file system that they share knows
-// locks. Names of cells never begin with a dot.
-fs::path work_folder(const fs::path& out, const std::string& name) {
-  return out / "cells" / ("." + name + "." + cell_name(host_name()));
-}
+// Where this machine works on a cell, which is locked meanwhile. Other machines have other folders: not every file
+// system that they share knows locks. Names of cells never begin with a dot.
+class WorkFolder {
+ public:
+  WorkFolder(const fs::path& out, const std::string& name, bool keeps_parts)
+      : path_(out / "cells" / ("." + name + "." + cell_name(host_name()))), keeps_parts_(keeps_parts) {
+    make_folder(path_);
+    lock_.emplace(path_);
+  }
+  // Parts of a cell stay for the next try. Nothing else of a cell that is stopped or fails is of any use.
+  ~WorkFolder() {
+    std::error_code ignored;  // what cannot be removed counts for nothing
+    if (!keeps_parts_) fs::remove_all(result(), ignored);
+    lock_.reset();
+    fs::remove(path_, ignored);  // it stays where it has parts, or where another process has begun to work
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  fs::path result() const { return path_ / "result"; }
+
+ private:
+  fs::path path_;
+  bool keeps_parts_;
+  std::optional<FolderLock> lock_;
+};
 
 // An empty folder to work in; for a list whose cells keep parts, with what there is of them.
 void begin_work(const CellList& list, const fs::path& result, const fs::path& folder) {
@@ -41,16 +61,17 @@ std::optional<CellRecord> result_of(const CellList& list, std::size_t number, co
   return std::move(found.record);
 }
 
-// Renames a finished folder to its place. Returns false where another machine has put the same result there before.
-bool put_in_place(const CellList& list, std::size_t number, const fs::path& out, const fs::path& folder,
-                  const CellWatch& watch) {
+// Renames a finished folder to its place. Returns the result that another machine has put there before, if it counts;
+// the folder then stays where it is.
+std::optional<CellRecord> put_in_place(const CellList& list, std::size_t number, const fs::path& out,
+                                       const fs::path& folder, const CellWatch& watch) {
   const fs::path place = cell_folder(out, list.names[number]);
   constexpr int most_tries = 10;  // each time another machine may be quicker
   for (int k = 0; k < most_tries; ++k) {
     std::error_code trouble;
     fs::rename(folder, place, trouble);
-    if (!trouble) return true;
-    if (result_of(list, number, out, watch)) return false;
+    if (!trouble) return {};
+    if (auto record = result_of(list, number, out, watch)) return record;
     const fs::path old = folder.parent_path() / "old";
     fs::remove_all(old);
     fs::rename(place, old, trouble);
@@ -75,23 +96,20 @@ FoundCell find_cell(const CellList& list, std::size_t number, const fs::path& ou
 std::optional<DoneCell> do_cell(const CellList& list, std::size_t number, const fs::path& out, const CellWatch& watch) {
   if (auto record = result_of(list, number, out, watch)) return DoneCell{std::move(*record), true};
   const std::string& name = list.names[number];
-  const fs::path work = work_folder(out, name), folder = work / "result";
-  make_folder(work);
-  auto lock = std::make_unique<FolderLock>(work);
+  const WorkFolder work(out, name, list.keeps_parts);
   if (auto record = result_of(list, number, out, watch))  // it was done meanwhile
     return DoneCell{std::move(*record), true};
-  begin_work(list, cell_folder(out, name), folder);
-  std::optional<CellResult> result = list.run(number, folder, watch);
+  begin_work(list, cell_folder(out, name), work.result());
+  // The key is of the files as they are now: who changes one in the course of the work gets a result of other settings.
+  DoneCell done{{name, list.kind, list.program, list.key(number), machine_name(), {}}};
+  std::optional<CellResult> result = list.run(number, work.result(), watch);
   if (!result) return {};
-  DoneCell done{{name, list.kind, list.program, list.key(number), machine_name(), std::move(*result)}};
-  write_file(folder / record_file, cell_record_json(done.record));
-  if (!put_in_place(list, number, out, folder, watch)) {
-    fs::remove_all(folder);
-    done = {find_cell(list, number, out).record, true};
+  done.record.result = std::move(*result);
+  write_file(work.result() / record_file, cell_record_json(done.record));
+  if (auto record = put_in_place(list, number, out, work.result(), watch)) {
+    fs::remove_all(work.result());
+    return DoneCell{std::move(*record), true};
   }
-  lock.reset();
-  std::error_code in_use;  // another process has begun to work there
-  fs::remove(work, in_use);
   return done;
 }
 
@@ -134,8 +152,9 @@ GatheredCells gather_cells(const CellList& list, const fs::path& out) {
 void show_result(const fs::path& result, const fs::path& shown) {
   make_folder(shown.parent_path());
   fs::remove_all(shown);
-  if (!fs::is_directory(result)) return;
-  fs::create_directory_symlink(result.lexically_relative(shown.parent_path()), shown);
+  std::error_code unlinked;  // the result itself is there
+  if (fs::is_directory(result, unlinked))
+    fs::create_directory_symlink(result.lexically_relative(shown.parent_path()), shown, unlinked);
 }
 
 }  // namespace selvedge

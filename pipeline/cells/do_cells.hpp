@@ -43,11 +43,25 @@ struct GatheredCells {
 // Makes the tables of the results that are there.
 GatheredCells gather_cells(const CellList&, const std::filesystem::path& out);
 
-// Lets a folder of a cell's result be found under another name too, by a relative link. What has that name, a run of an
-// earlier program, is removed.
+// The rows of results as `read` makes them of their JSON; what it cannot read is left out. show(row, cell) is called
+// for each.
+template <class Read, class Show>
+auto cell_rows(const std::vector<CellRecord>& records, const Read& read, const Show& show) {
+  std::vector<typename decltype(read(std::string()))::value_type> rows;
+  for (const CellRecord& record : records)
+    if (auto row = read(record.result.row)) {
+      show(*row, record.cell);
+      rows.push_back(std::move(*row));
+    }
+  return rows;
+}
+
+// Lets a folder of a cell's result be found under another name too, by a relative link, where the file system has
+// links. What has that name, a run of an earlier program, is removed.
 void show_result(const std::filesystem::path& result, const std::filesystem::path& shown);
 
 std::string cells_table(const std::vector<WorkCell>&);  // for people
+std::string cell_names_json(const CellList&);
 std::string cells_json(const CellList&, const std::vector<WorkCell>&);
 std::string done_cells_json(const std::vector<DoneCell>&);
 std::string gathered_text(const GatheredCells&);

@@ -7,8 +7,11 @@ namespace selvedge {
 
 // What cells that run scenes share.
 
-// The scene's file and the files that its values name.
+// The scene's file, the files that its values name, and those of config_files_near.
 std::vector<std::filesystem::path> needs_of(const Setup&);
+
+// The materials and outfits that a scene in the folder finds by name, but for the program's own.
+std::vector<std::filesystem::path> config_files_near(const std::filesystem::path& folder);
 
 // A hash of the scene's configuration and of the bytes of the files that its values name, wherever they lie.
 std::string inputs_key(const Setup&);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "pipeline/cells/do_cells.hpp"
 #include "pipeline/cells/scene_cells.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -55,9 +56,7 @@ std::optional<CellResult> run_shot(const Shot& shot, const Setup& setup, const s
 }
 
 CellTables gather_shots(const std::vector<CellRecord>& records, const std::filesystem::path& out) {
-  std::vector<ShotRow> rows;
-  for (const CellRecord& record : records)
-    if (const std::optional<ShotRow> row = read_shot_row(record.result.row)) rows.push_back(*row);
+  const std::vector<ShotRow> rows = cell_rows(records, read_shot_row, [](const ShotRow&, const std::string&) {});
   const CellTables tables{shots_table(rows), shots_json(rows), std::ranges::all_of(rows, &ShotRow::passed)};
   write_file(out / "shots.json", tables.json);
   write_file(out / "shots.csv", shots_csv(rows));

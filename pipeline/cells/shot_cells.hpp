@@ -16,7 +16,7 @@ struct ShotRequest {
   bool pages = true;  // each run gets the page that plays it
 };
 
-// One shot, and what came of it. It passes if its run is clean (summary.hpp).
+// The result of one shot. It passes if its run is clean (summary.hpp).
 struct ShotRow {
   std::string shot, scene;
   bool passed = false;

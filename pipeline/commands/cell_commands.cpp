@@ -30,7 +30,8 @@ constexpr const char* about_file = "work file, comparison, stability suite or da
 int list_cells(const CellsArguments& arguments, bool json) {
   const CellList list = read_cells(arguments.file);
   if (arguments.names) {
-    for (const std::string& name : list.names) std::cout << name << "\n";
+    if (json) std::cout << cell_names_json(list);
+    for (const std::string& name : list.names) people(json) << name << "\n";
     return 0;
   }
   std::vector<WorkCell> cells;
@@ -80,23 +81,24 @@ int gather(const CellArguments& arguments, bool json) {
 RunCommand cells_command(CLI::App& command) {
   const auto arguments = std::make_shared<CellsArguments>();
   command.add_option("file", arguments->file, about_file)->required();
-  command.add_flag("--names", arguments->names, "the names alone, a line each; reads no scenes");
+  command.add_flag("--names", arguments->names, "print the names alone, one a line, without reading the scenes");
   return [arguments](bool json) { return list_cells(*arguments, json); };
 }
 
 RunCommand cell_command(CLI::App& command) {
   const auto arguments = std::make_shared<CellArguments>();
   command.add_option("file", arguments->file, about_file)->required();
-  command.add_option("names", arguments->names, "cells to do, one after the other")->required();
-  command.add_option("--out", arguments->out, "folder of all cells")->required();
-  command.add_option("--program", arguments->program, "refuse to work unless this program has that hash");
+  command.add_option("names", arguments->names, "names of cells to do, one after the other")->required();
+  command.add_option("--out", arguments->out, "folder for the results of all cells")->required();
+  command.add_option("--program", arguments->program,
+                     "hash that this program must have; the command fails if it has another");
   return [arguments](bool json) { return do_named_cells(*arguments, json); };
 }
 
 RunCommand gather_command(CLI::App& command) {
   const auto arguments = std::make_shared<CellArguments>();
   command.add_option("file", arguments->file, about_file)->required();
-  command.add_option("--out", arguments->out, "folder of all cells")->required();
+  command.add_option("--out", arguments->out, "folder for the results of all cells")->required();
   return [arguments](bool json) { return gather(*arguments, json); };
 }
 

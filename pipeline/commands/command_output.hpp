@@ -10,7 +10,7 @@ namespace selvedge {
 // Where a command's text for people goes.
 inline std::ostream& people(bool json) { return json ? std::cerr : std::cout; }
 
-// Prints what came of a command, for people and with `json` as an object, and returns the exit status.
+// Prints the result of a command, for people and with `json` as an object, and returns the exit status.
 int end_command(bool json, const std::string& text, const std::string& object, bool well);
 
 // The line of a command that was stopped before its end; empty if it was not.

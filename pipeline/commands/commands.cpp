@@ -53,11 +53,12 @@ Setup read_scene(const SceneArguments& arguments) {
     overrides.push_back("run.learned.weights=" + quoted_yaml(std::filesystem::absolute(*arguments.weights).string()));
   if (arguments.device) overrides.push_back("run.learned.device=" + *arguments.device);
   Setup setup = read_setup(arguments.scene, overrides);
-  if ((arguments.weights || arguments.device) && setup.kind.network == NetworkUse::none)
+  const bool unread = arguments.weights && !reads_weights(setup);
+  if (unread || (arguments.device && setup.kind.network == NetworkUse::none))
     setup.warnings.push_back(
         fmt::format("{} has no part in the stepper `{}`, which runs no network; --stepper learned "
                     "and --stepper hybrid do",
-                    arguments.weights ? "--weights" : "--device", setup.run.stepper));
+                    unread ? "--weights" : "--device", setup.run.stepper));
   return setup;
 }
 
@@ -150,28 +151,31 @@ int simulate(const SimulateArguments& arguments, bool json) {
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
   command.add_option("scene", arguments.scene, "scene file (YAML)")->required();
   add_overrides(command, arguments.overrides, "the scene's");
-  command.add_option("--stepper", arguments.stepper, joined(known_kinds().names()));
-  command.add_option("--weights", arguments.weights, "weight file of the steppers `learned` and `hybrid`");
-  command.add_option("--device", arguments.device, "that runs their network: cpu, libtorch, cuda or auto");
+  command.add_option("--stepper", arguments.stepper, "method that makes the frames: " + joined(known_kinds().names()));
+  command.add_option("--weights", arguments.weights,
+                     "weight file of the steppers `learned`, `hybrid` and `carried_fitted`");
+  command.add_option("--device", arguments.device, "device that computes the network: cpu, libtorch, cuda or auto");
 }
 
 }  // namespace
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& whose) {
-  command.add_option("--set", overrides, "key=value instead of " + whose + ", dotted keys")->allow_extra_args(false);
+  command
+      .add_option("--set", overrides, "key=value, in place of " + whose + " value; keys are dotted; may be given again")
+      ->allow_extra_args(false);
 }
 
 RunCommand simulate_command(CLI::App& command) {
   const auto arguments = std::make_shared<SimulateArguments>();
   add_scene_options(command, arguments->scene);
   command.add_option("--out", arguments->out,
-                     "folder for the results (the scene's output.folder, or out/NAME-OF-SCENE)");
+                     "folder for the results; default: output.folder of the scene, or out/NAME-OF-SCENE");
   command
       .add_flag("--resume", arguments->resume,
-                "go on from the checkpoint of an interrupted run; auto: or start, or report the run that has ended")
+                "continue an interrupted run from its checkpoint; auto: also start a run, or report one that has ended")
       ->check(CLI::IsMember({"true", "auto"}));
-  command.add_flag("!--no-view", arguments->view, "do not make the page");
-  command.add_flag("!--no-cache", arguments->cache, "compute soft tissue anew, and do not keep it");
+  command.add_flag("!--no-view", arguments->view, "make no page that plays the run");
+  command.add_flag("!--no-cache", arguments->cache, "compute the soft tissue of bodies anew, and do not keep it");
   return [arguments](bool json) { return simulate(*arguments, json); };
 }
 
@@ -187,7 +191,8 @@ RunCommand plan_command(CLI::App& command) {
 
 RunCommand info_command(CLI::App& command) {
   const auto keys = std::make_shared<std::string>();
-  command.add_option("--keys", *keys, "user: what most scenes need; expert: all other keys of scene files")
+  command
+      .add_option("--keys", *keys, "print keys of scene files; user: those that most scenes need; expert: all others")
       ->check(CLI::IsMember({"user", "expert"}));
   return [keys](bool json) {
     std::cout << (!keys->empty() ? scene_keys_text(*keys == "user" ? KeyTier::user : KeyTier::expert)

@@ -24,12 +24,12 @@ int end_suite(bool json, const std::string& table, const std::string& object, bo
 
 RunCommand bench_command(CLI::App& command) {
   const auto request = std::make_shared<BenchRequest>();
-  command.add_option("--sizes", request->sizes, "vertices along a side")->delimiter(',');
-  command.add_option("--scenes", request->scenes, "hang, drop, tube")->delimiter(',');
-  command.add_option("--only", request->only, "of the parts detection, engine, training, scenes")
+  command.add_option("--sizes", request->sizes, "numbers of vertices along a side of the sheet")->delimiter(',');
+  command.add_option("--scenes", request->scenes, "names of scenes: hang, drop, tube")->delimiter(',');
+  command.add_option("--only", request->only, "parts to run: detection, engine, training, scenes")
       ->delimiter(',')
       ->check(CLI::IsMember({"detection", "engine", "training", "scenes"}));
-  command.add_option("--frames", request->frames, "instead of the scenes' own");
+  command.add_option("--frames", request->frames, "number of frames, in place of the scenes' own");
   command.add_option("--configs", request->configs, "folder of the scenes");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
@@ -44,11 +44,13 @@ RunCommand bench_command(CLI::App& command) {
 
 RunCommand stress_command(CLI::App& command) {
   const auto request = std::make_shared<StressRequest>();
-  command.add_option("scenes", request->scenes, "names of scenes (all)");
-  command.add_option("--repeats", request->repeats, "runs of each scene")->check(CLI::PositiveNumber);
-  command.add_option("--seed", request->seed, "of the first repeat's jitter");
-  command.add_option("--jitter", request->jitter, "of the starts, in mean edge lengths")->check(CLI::NonNegativeNumber);
-  command.add_flag("--short", request->short_form, "the scenes' short forms");
+  command.add_option("scenes", request->scenes, "names of scenes; default: all");
+  command.add_option("--repeats", request->repeats, "number of runs of each scene")->check(CLI::PositiveNumber);
+  command.add_option("--seed", request->seed, "seed of the jitter in the first run");
+  command
+      .add_option("--jitter", request->jitter, "largest random displacement of start positions, in mean edge lengths")
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--short", request->short_form, "run the short forms of the scenes");
   command.add_option("--configs", request->configs, "folder of the scenes");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
@@ -61,9 +63,10 @@ RunCommand stress_command(CLI::App& command) {
 
 RunCommand wardrobe_command(CLI::App& command) {
   const auto request = std::make_shared<WardrobeRequest>();
-  command.add_option("wear", request->wear, "names of garments and outfits by code (all)");
-  command.add_option("--clips", request->clips, "names of procedural clips (all)")->delimiter(',');
-  command.add_option("--frames", request->most_frames, "of a clip at most")->check(CLI::PositiveNumber);
+  command.add_option("wear", request->wear, "names of garments and outfits that the program makes; default: all");
+  command.add_option("--clips", request->clips, "names of procedural clips; default: all")->delimiter(',');
+  command.add_option("--frames", request->most_frames, "largest number of frames of a clip")
+      ->check(CLI::PositiveNumber);
   command.add_option("--configs", request->configs, "folder of the configurations");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
@@ -77,7 +80,7 @@ RunCommand wardrobe_command(CLI::App& command) {
 RunCommand compare_command(CLI::App& command) {
   const auto request = std::make_shared<CompareRequest>();
   command.add_option("comparison", request->file, "comparison file (YAML)")->required();
-  command.add_flag("--short", request->short_form, "the short forms of the comparison and its scenes");
+  command.add_flag("--short", request->short_form, "run the short forms of the comparison and of its scenes");
   add_overrides(command, request->overrides, "the comparison file's");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
@@ -93,10 +96,10 @@ RunCommand compare_command(CLI::App& command) {
 
 RunCommand validate_command(CLI::App& command) {
   const auto request = std::make_shared<ValidateRequest>();
-  command.add_option("cases", request->cases, "names of cases (all)");
-  command.add_option("--set", request->overrides, "parameter=value[,value...] instead of the cases' own")
+  command.add_option("cases", request->cases, "names of cases; default: all");
+  command.add_option("--set", request->overrides, "parameter=value[,value...], in place of the values of the cases")
       ->allow_extra_args(false);
-  command.add_flag("--short", request->short_form, "the cases' short lists of parameters");
+  command.add_flag("--short", request->short_form, "run the short list of parameters of each case");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
     ValidateRequest logged = *request;
@@ -108,11 +111,11 @@ RunCommand validate_command(CLI::App& command) {
 
 RunCommand stability_command(CLI::App& command) {
   const auto request = std::make_shared<StabilityRequest>();
-  command.add_option("suite", request->suite, "suite file (configs/stability.yaml)");
-  command.add_option("--case", request->cases, "names of cases (all)")->allow_extra_args(false);
-  command.add_option("--stepper", request->stepper, "in place of the scenes' own");
+  command.add_option("suite", request->suite, "suite file; default: configs/stability.yaml");
+  command.add_option("--case", request->cases, "names of cases; default: all")->allow_extra_args(false);
+  command.add_option("--stepper", request->stepper, "stepper, in place of the scenes' own");
   command.add_option("--weights", request->weights, "weight file of the steppers `learned` and `hybrid`");
-  command.add_flag("--short", request->short_form, "the runs that the suite marks as short");
+  command.add_flag("--short", request->short_form, "do only the runs that the suite marks as short");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {
     warn_of_training();

@@ -42,15 +42,17 @@ struct ViewArguments {
 RunCommand check_command(CLI::App& command) {
   const auto request = std::make_shared<CheckRequest>();
   command.add_option("file", request->file, "mesh (.obj, .ply), trajectory (.h5), or the folder of a run")->required();
-  command.add_option("--rest", request->rest, "mesh of the same faces at rest, for the stretches");
-  command.add_option("--body", request->bodies, "mesh that must not be touched; may be given again")
+  command.add_option("--rest", request->rest, "mesh with the same faces at rest, from which stretch is measured");
+  command.add_option("--body", request->bodies, "mesh of a body that the cloth must not intersect; may be given again")
       ->allow_extra_args(false);
   command.add_option("--against", request->against,
-                     "trajectory, or run, of the same cloths: measures of papers against it");
-  command.add_option("--audit", request->audit, "own, or fcl: FCL's opinion beside it")
+                     "trajectory or run of the same cloths; adds the papers' measures of the difference");
+  command.add_option("--audit", request->audit, "own: the program's audit; fcl: also FCL's result, to compare")
       ->check(CLI::IsMember({"own", "fcl"}));
-  command.add_option("--horizon", request->horizon, "largest gap looked for [m]")->check(CLI::PositiveNumber);
-  command.add_flag("--volume", request->volume, "the volume that crossings enclose, holes being closed");
+  command.add_option("--horizon", request->horizon, "distance above which gaps are not measured [m]")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--volume", request->volume,
+                   "also measure the volume that crossing surfaces enclose, with holes closed");
   return [request](bool json) {
     const CheckReport report = check(*request);
     return end_command(json, check_text(report), check_json(report), is_clean(report));
@@ -60,12 +62,13 @@ RunCommand check_command(CLI::App& command) {
 RunCommand untangle_command(CLI::App& command) {
   const auto request = std::make_shared<UntangleRequest>();
   command.add_option("file", request->file, "mesh (.obj, .ply)")->required();
-  command.add_option("--out", request->out, "where the untangled mesh goes (.obj, .ply)")->required();
-  command.add_option("--body", request->bodies, "mesh to part from, stands still; may be given again")
+  command.add_option("--out", request->out, "file for the untangled mesh (.obj, .ply)")->required();
+  command.add_option("--body", request->bodies, "mesh of a body that does not move; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm, in");
-  command.add_option("--layers", request->layers, "one number a piece of cloth, the innermost lowest")->delimiter(',');
-  command.add_option("--iterations", request->iterations, "at most")->check(CLI::PositiveNumber);
+  command.add_option("--unit", request->unit, "unit of the coordinates, for lengths in the report: m, dm, cm, mm, in");
+  command.add_option("--layers", request->layers, "one number for each piece of cloth; the innermost has the lowest")
+      ->delimiter(',');
+  command.add_option("--iterations", request->iterations, "largest number of iterations")->check(CLI::PositiveNumber);
   return [request](bool json) {
     UntangleRequest shown = *request;
     const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -86,18 +89,23 @@ RunCommand untangle_command(CLI::App& command) {
 RunCommand push_command(CLI::App& command) {
   const auto request = std::make_shared<PushRequest>();
   command.add_option("file", request->file, "garment (.obj, .ply), in metres")->required();
-  command.add_option("--body", request->body, "mesh to push it out of")->required();
-  command.add_option("--truth", request->truth, "mesh of the garment's faces that the result is compared with");
-  command.add_option("--out", request->out, "where the pushed garment goes (.obj, .ply)");
-  command.add_option("--method", request->method, "layer, smooth (a least-squares displacement) or none")
+  command.add_option("--body", request->body, "mesh of the body")->required();
+  command.add_option("--truth", request->truth, "true positions of the garment, with the same faces, to compare with");
+  command.add_option("--out", request->out, "file for the pushed garment (.obj, .ply)");
+  command
+      .add_option("--method", request->method,
+                  "layer (the repulsive layer), smooth (a least-squares displacement) or none")
       ->check(CLI::IsMember({"layer", "smooth", "none"}));
-  command.add_option("--shape", request->shape, "of a body that passes through itself")
+  command
+      .add_option("--shape", request->shape,
+                  "surface of a body that passes through itself: union (its outside) or raw (all faces)")
       ->check(CLI::IsMember({"union", "raw"}));
-  command.add_option("--alpha", request->alpha, "the layer's scale")->check(CLI::NonNegativeNumber);
-  command.add_option("--margin", request->margin, "added to each push [m]")->check(CLI::NonNegativeNumber);
-  command.add_option("--recheck", request->recheck, "so often pushed vertices are asked again")
+  command.add_option("--alpha", request->alpha, "length of the push, in penetration depths")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--edge-pass", request->edge_pass, "rounds that lift crossing edges")
+  command.add_option("--margin", request->margin, "length added to each push [m]")->check(CLI::NonNegativeNumber);
+  command.add_option("--recheck", request->recheck, "number of further passes over pushed vertices")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--edge-pass", request->edge_pass, "number of rounds that move crossing edges out of the body")
       ->check(CLI::NonNegativeNumber);
   return [request](bool json) {
     const PushReport report = push_mesh(*request);
@@ -108,22 +116,27 @@ RunCommand push_command(CLI::App& command) {
 RunCommand dress_command(CLI::App& command) {
   const auto request = std::make_shared<DressRequest>();
   command.add_option("mesh", request->mesh, "garment where the body wears it (.obj, .ply)")->required();
-  command.add_option("--out", request->out, "the garment for scenes (.h5)")->required();
-  command.add_option("--unit", request->unit, "of the coordinates: m, dm, cm, mm, in; left out: guessed from the body");
+  command.add_option("--out", request->out, "file for the garment (.h5)")->required();
+  command.add_option("--unit", request->unit,
+                     "unit of the coordinates: m, dm, cm, mm, in; default: guessed from the body");
   const auto up = std::make_shared<std::string>();
-  command.add_option("--up", *up, "axis of the mesh that points up; left out: guessed from the body")
+  command.add_option("--up", *up, "axis of the mesh that points up; default: guessed from the body")
       ->check(CLI::IsMember({"y", "z"}));
   const auto weld = std::make_shared<std::string>();
-  command.add_flag("--weld", *weld, "join pieces where their borders meet; --weld=0.1mm: within that distance");
-  command.add_option("--body", request->body, "mannequin, or a file (.npz, .h5)");
-  command.add_option("--shape", request->shape, "of that body: coefficients")->delimiter(',');
-  command.add_option("--pose", request->pose, "clip that the body stands in: a name, .bvh or .npz (zero pose)");
-  command.add_option("--time", request->time, "of the clip [s]");
-  command.add_option("--rotate", request->rotations, "JOINT=x,y,z: its rotation in that pose, axis times angle [rad]")
+  command.add_flag("--weld", *weld, "join pieces where their borders meet; --weld=0.1mm sets the distance");
+  command.add_option("--body", request->body, "body: mannequin, or a file (.npz, .h5)");
+  command.add_option("--shape", request->shape, "shape coefficients of the body")->delimiter(',');
+  command.add_option("--pose", request->pose, "clip that poses the body: a name, .bvh or .npz; default: zero pose");
+  command.add_option("--time", request->time, "time of the pose in the clip [s]");
+  command
+      .add_option("--rotate", request->rotations,
+                  "JOINT=x,y,z: rotation of a joint in the pose, axis times angle [rad]; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--fit", request->fit, "tight: weights of the nearest vertex; loose: averaged")
+  command
+      .add_option("--fit", request->fit,
+                  "skinning weights: loose (mean of near body vertices) or tight (the nearest one's)")
       ->check(CLI::IsMember({"tight", "loose"}));
-  command.add_option("--pin", request->pins, "group that stays with the body, or none; may be given again")
+  command.add_option("--pin", request->pins, "vertex group that is pinned to the body, or none; may be given again")
       ->allow_extra_args(false);
   return [request, up, weld](bool json) {
     if (!up->empty()) request->up = *up == "z" ? Up::z : Up::y;
@@ -137,14 +150,15 @@ RunCommand dress_command(CLI::App& command) {
 RunCommand pattern_command(CLI::App& command) {
   const auto request = std::make_shared<PatternRequest>();
   command.add_option("pattern", request->file, "pattern of GarmentCode (*_specification.json)")->required();
-  command.add_option("--out", request->out, "the garment for scenes (.h5), or its mesh alone (.obj, .ply)")->required();
-  command.add_option("--body", request->body, "mannequin, a body (.npz, .h5) or a mesh in metres (.obj, .ply)");
+  command.add_option("--out", request->out, "file for the garment (.h5), or for its mesh alone (.obj, .ply)")
+      ->required();
+  command.add_option("--body", request->body, "body: mannequin, a file (.npz, .h5) or a mesh in metres (.obj, .ply)");
   command.add_option("--edge", request->edge, "length of the triangles' edges [m]")->check(CLI::Range(0.002, 0.2));
-  command.add_option("--material", request->material, "of the cloth: a name, as in scenes");
-  command.add_option("--pin", request->pins, "group that stays with the body in scenes; may be given again")
+  command.add_option("--material", request->material, "name of the material of the cloth, as in scenes");
+  command.add_option("--pin", request->pins, "vertex group that scenes pin to the body; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--record", request->record, "trajectory of the sewing (.h5)");
-  command.add_flag("--flat", request->flat, "only cut: the panels as a mesh");
+  command.add_option("--record", request->record, "file for the trajectory of the sewing (.h5)");
+  command.add_flag("--flat", request->flat, "write the flat panels as a mesh, and do not sew");
   return [request](bool json) {
     PatternRequest followed = *request;
     followed.progress = [](const SewingFrame& frame) {
@@ -163,19 +177,21 @@ RunCommand body_command(CLI::App& command) {
       .add_option("file", request->file,
                   "mesh (.obj, .ply), model of the SMPL family (.npz) or glTF with a skin (.glb, .gltf)")
       ->required();
-  command.add_option("--skeleton", request->skeleton, "of the mesh, as MakeHuman has it (.mhskel)");
-  command.add_option("--weights", request->weights, "of the mesh, as MakeHuman has them (.mhw)");
-  command.add_option("--joints", request->joints, "where the joints of a mesh are that has neither (.yaml)");
-  command.add_option("--unit", request->unit, "of the mesh: m, dm, cm, mm, in");
+  command.add_option("--skeleton", request->skeleton, "MakeHuman's skeleton of the mesh (.mhskel)");
+  command.add_option("--weights", request->weights, "MakeHuman's skinning weights of the mesh (.mhw)");
+  command.add_option("--joints", request->joints,
+                     "positions of the joints, for a mesh without skeleton and weights (.yaml)");
+  command.add_option("--unit", request->unit, "unit of the mesh: m, dm, cm, mm, in");
   const auto up = std::make_shared<std::string>("y");
   command.add_option("--up", *up, "axis of the mesh, and of --joints, that points up")
       ->check(CLI::IsMember({"y", "z"}));
   command
-      .add_option("--mesh", request->meshes.only, "mesh of glTF, or group, that becomes the body; may be given again")
+      .add_option("--mesh", request->meshes.only,
+                  "mesh of a glTF file, or group of a mesh, that becomes the body; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--without", request->meshes.without, "mesh or group that does not; may be given again")
+  command.add_option("--without", request->meshes.without, "mesh or group that is left out; may be given again")
       ->allow_extra_args(false);
-  command.add_option("--out", request->out, "where the body goes (.h5)")->required();
+  command.add_option("--out", request->out, "file for the body (.h5)")->required();
   return [request, up](bool json) {
     request->up = *up == "z" ? Up::z : Up::y;
     const BodyReport report = convert_body(*request);
@@ -196,12 +212,15 @@ RunCommand ccd_command(CLI::App& command) {
 RunCommand fit_command(CLI::App& command) {
   const auto request = std::make_shared<FitRequest>();
   command.add_option("run", request->run, "trajectory (.h5), or the folder of a run")->required();
-  command.add_option("--scene", request->scene, "that it was made of (config.yaml beside it)");
-  command.add_option("--body", request->body, "obstacle to fit (the first body)");
-  command.add_option("--regions", request->regions, "of the body: vertices by name (.json); otherwise by its joints");
-  command.add_option("--frame", request->frame, "the last one if left out")->check(CLI::NonNegativeNumber);
-  command.add_option("--reach", request->reach, "what is nearer touches the skin [m]")->check(CLI::PositiveNumber);
-  command.add_option("--out", request->out, "page, coloured (.html)");
+  command.add_option("--scene", request->scene, "scene of the run; default: config.yaml beside the trajectory");
+  command.add_option("--body", request->body, "name of the body; default: the first one of the scene");
+  command.add_option("--regions", request->regions,
+                     "regions of the body: vertices by name (.json); default: regions by joints");
+  command.add_option("--frame", request->frame, "number of the frame; default: the last one")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--reach", request->reach, "distance from the skin within which cloth counts as touching [m]")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--out", request->out, "file for a page that shows the results as colours (.html)");
   return [request](bool json) {
     const FitReport report = fit(*request);
     const std::string page = request->out.empty() ? "" : "page to look at: " + request->out.string() + "\n";
@@ -212,13 +231,13 @@ RunCommand fit_command(CLI::App& command) {
 RunCommand export_command(CLI::App& command) {
   const auto request = std::make_shared<ExportRequest>();
   command.add_option("trajectory", request->trajectory, "trajectory (.h5), or the folder of a run")->required();
-  command.add_option("--format", request->format, export_format_list());
-  command.add_option("--out", request->out, "folder")->default_val("export");
-  command.add_flag("--obstacles", request->obstacles, "also the obstacles");
+  command.add_option("--format", request->format, "format: " + export_format_list());
+  command.add_option("--out", request->out, "folder for the files")->default_val("export");
+  command.add_flag("--obstacles", request->obstacles, "export the obstacles too");
   command.add_option("--onto", request->onto,
-                     "a mesh of your own, at the cloth's rest shape, that it moves (.obj, .ply)");
-  command.add_option("--onto-unit", request->onto_unit, "of that mesh: m, dm, cm, mm");
-  command.add_option("--cloth", request->cloth, "the cloth that moves it; without it all do");
+                     "mesh of your own at the rest shape of the cloth, which moves it (.obj, .ply)");
+  command.add_option("--onto-unit", request->onto_unit, "unit of that mesh: m, dm, cm, mm, in");
+  command.add_option("--cloth", request->cloth, "name of the cloth that moves the mesh; default: all cloths");
   return [request](bool json) {
     Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
     ExportRequest shown = *request;
@@ -240,7 +259,7 @@ RunCommand export_command(CLI::App& command) {
 RunCommand view_command(CLI::App& command) {
   const auto arguments = std::make_shared<ViewArguments>();
   command.add_option("runs", arguments->runs, "trajectories (.h5) or folders of runs, shown side by side")->required();
-  command.add_option("--out", arguments->out, "HTML file");
+  command.add_option("--out", arguments->out, "file for the page (.html)");
   return [arguments](bool json) {
     write_view(arguments->runs, arguments->out);
     return end_command(json, "page to look at: " + arguments->out.string() + "\n",

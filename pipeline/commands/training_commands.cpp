@@ -8,7 +8,8 @@
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/processes/mpi_processes.hpp"
 #include "pipeline/processes/together.hpp"
-#include "pipeline/training/running_mark.hpp"
+#include "pipeline/run/running_mark.hpp"
+#include "pipeline/teach/teach_carried.hpp"
 #include "pipeline/training/train.hpp"
 
 namespace selvedge {
@@ -19,6 +20,11 @@ struct TrainArguments {
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path out;
   bool resume = false, pause = false;
+};
+
+struct TeachArguments {
+  TeachRequest request;
+  std::string kind;
 };
 
 std::string name_of_run(const TrainArguments& arguments) {
@@ -40,9 +46,10 @@ int train_beside(const TrainRequest& request) {
 
 RunCommand dataset_command(CLI::App& command) {
   const auto request = std::make_shared<DatasetRequest>();
-  command.add_option("config", request->config, "data file (YAML), see docs/repulsion.md")->required();
+  command.add_option("config", request->config, "file that describes the drapes (YAML), see docs/repulsion.md")
+      ->required();
   add_overrides(command, request->overrides, "the file\'s");
-  command.add_option("--out", request->out, "folder for the drapes (out/data/NAME)");
+  command.add_option("--out", request->out, "folder for the drapes; default: out/data/NAME");
   return [request](bool json) {
     const InterruptWatch watch;
     const DatasetSummary summary = make_dataset(followed(*request));
@@ -55,8 +62,8 @@ RunCommand train_command(CLI::App& command) {
   const auto arguments = std::make_shared<TrainArguments>();
   command.add_option("config", arguments->config, "training file (YAML), see docs/training.md")->required();
   add_overrides(command, arguments->overrides, "the file\'s");
-  command.add_option("--out", arguments->out, "folder for weights, checkpoint and tables (out/training/NAME)");
-  command.add_flag("--resume", arguments->resume, "go on from the folder's checkpoint");
+  command.add_option("--out", arguments->out, "folder for weights, checkpoint and tables; default: out/training/NAME");
+  command.add_flag("--resume", arguments->resume, "continue from the checkpoint in the folder");
   command.add_flag("--pause", arguments->pause, "ask the run in the folder to stop at a checkpoint");
   return [arguments](bool json) {
     if (arguments->pause) {
@@ -84,6 +91,31 @@ RunCommand train_command(CLI::App& command) {
     const TrainedRun made = train_as_asked(request);
     const char* more = made.finished ? "" : "go on with --resume and the same arguments\n";
     return end_command(json, made.text + more, made.json, made.finished);
+  };
+}
+
+RunCommand teach_command(CLI::App& command) {
+  const auto arguments = std::make_shared<TeachArguments>();
+  TeachRequest* request = &arguments->request;
+  command.add_option("scene", request->scene, "scene file (YAML) of an outfit on a body")->required();
+  command
+      .add_option("--kind", arguments->kind,
+                  "what is taught: carried, the coefficients of the stepper `carried_fitted`")
+      ->required()
+      ->check(CLI::IsMember({"carried"}));
+  command.add_option("--clips", request->clips, "clips of the body to fit on")->required()->delimiter(',');
+  command.add_option("--held-out", request->held_out, "clips of the body to measure on")->delimiter(',');
+  command.add_option("--rounds", request->rounds, "in which the solver corrects what the fitted stepper makes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_flag("--own", request->own, "a set of coefficients for each vertex, for this scene alone");
+  command.add_option("--out", request->out, "file of coefficients (.h5)")->required();
+  add_overrides(command, request->overrides, "the scene's");
+  return [arguments](bool json) {
+    const InterruptWatch watch;
+    const TeachReport report = teach_carried(followed(arguments->request));
+    const char* more = report.finished ? "" : "stopped; the same command starts again\n";
+    return end_command(json, teach_text(report) + more, teach_json(report), report.finished);
   };
 }
 

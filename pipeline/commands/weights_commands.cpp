@@ -26,8 +26,9 @@ int print_weights(const WeightFile& file, bool json) {
 
 RunCommand weights_import_command(CLI::App& command) {
   const auto files = std::make_shared<TwoFiles>();
-  command.add_option("checkpoint", files->from, "published by the authors of HOOD or ContourCraft (.pth)")->required();
-  command.add_option("--out", files->other, "where the weight file goes (.h5)")->required();
+  command.add_option("checkpoint", files->from, "checkpoint that the authors of HOOD or ContourCraft published (.pth)")
+      ->required();
+  command.add_option("--out", files->other, "file for the weights (.h5)")->required();
   return [files](bool json) {
     ImportedWeights imported = read_published_weights(files->from);
     const WeightFile file{imported.architecture, std::move(imported.weights), "", origin_of(imported),
@@ -46,7 +47,7 @@ RunCommand weights_info_command(CLI::App& command) {
 RunCommand weights_halve_command(CLI::App& command) {
   const auto files = std::make_shared<TwoFiles>();
   command.add_option("file", files->from, "weight file (.h5)")->required();
-  command.add_option("--out", files->other, "where the weight file of half the size goes (.h5)")->required();
+  command.add_option("--out", files->other, "file for the weights in 16-bit floats (.h5)")->required();
   return [files](bool json) {
     write_weight_file(files->other, read_weight_file(files->from), WeightStorage::half);
     return print_weights(read_weight_file(files->other), json);
@@ -56,7 +57,7 @@ RunCommand weights_halve_command(CLI::App& command) {
 RunCommand weights_parity_command(CLI::App& command) {
   const auto files = std::make_shared<TwoFiles>();
   command.add_option("file", files->from, "weight file (.h5) or published checkpoint (.pth)")->required();
-  command.add_option("dump", files->other, "a step that the authors' code took (.npz)")->required();
+  command.add_option("dump", files->other, "recording of a step by the authors' code (.npz)")->required();
   return [files](bool json) {
     const bool is_checkpoint = files->from.extension() == ".pth";
     ImportedWeights network;

@@ -9,6 +9,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/cells/do_cells.hpp"
 #include "pipeline/cells/scene_cells.hpp"
+#include "pipeline/compare/compare_plots.hpp"
 #include "pipeline/compare/compare_scene.hpp"
 #include "pipeline/compare/compared_drapes.hpp"
 #include "pipeline/compare/evaluation.hpp"
@@ -31,6 +32,7 @@ struct CompareWork {
   CompareRequest request;
   Comparison comparison;
   std::string program;
+  TangledSearch search;
   std::vector<std::string> names;                // of the cells
   std::vector<std::optional<SceneWork>> scenes;  // read when they are needed
 };
@@ -184,11 +186,14 @@ bool report_drapes(const CompareWork& work, const std::filesystem::path& out, Co
   return true;
 }
 
+// Where errors of sequences are.
+std::string sequences_of(const Comparison& comparison) { return comparison.file.string() + ": sequences"; }
+
 // The scenes of `sequences`, if there are any.
 void add_made_scenes(Comparison& comparison) {
   const std::string& training = comparison.sequences.training;
   if (training.empty() && comparison.sequences.count == 0) return;
-  read_for(comparison.file.string() + ": sequences",
+  read_for(sequences_of(comparison),
            [&] { training.empty() ? add_sequences(comparison) : add_training_sequences(comparison); });
 }
 
@@ -209,6 +214,9 @@ std::shared_ptr<CompareWork> read_work(const CompareRequest& request) {
 SceneWork& scene_of(CompareWork& work, std::size_t k) {
   std::optional<SceneWork>& scene = work.scenes[k];
   if (!scene) {
+    read_for(sequences_of(work.comparison), [&] {
+      find_start(work.comparison, work.program, work.request.log, work.search, work.comparison.scenes[k]);
+    });
     scene = open_scene(work.comparison, work.comparison.scenes[k], work.request.short_form, work.program);
     scene->keeps = static_cast<int>(k) < work.comparison.keep_runs;
   }
@@ -234,7 +242,7 @@ double rough_seconds_of(const Comparison& comparison, const SceneWork& work) {
     if (!setup) continue;
     const int vertices = setup->scene.surface.vertex_count, frames = setup->run.frames;
     if (sum == 0 && work.scene->states > 0)
-      sum = rough_seconds(vertices, 16 * frames + 32 * work.scene->states * work.scene->horizon);
+      sum = rough_seconds(vertices, 16.0 * frames + 32.0 * work.scene->states * work.scene->horizon);
     sum += comparison.repeats * rough_seconds(vertices, frames);
   }
   return sum;

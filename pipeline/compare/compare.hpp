@@ -9,7 +9,6 @@
 #include "pipeline/cells/cell_list.hpp"
 #include "pipeline/compare/compare_result.hpp"
 #include "pipeline/compare/comparison.hpp"
-#include "pipeline/compare/svg_plots.hpp"
 
 namespace selvedge {
 
@@ -37,9 +36,6 @@ CellList compare_cells(const CompareRequest&);
 // were made of proposals.
 void rank(std::vector<CompareRow>&);
 
-// How a row with this error is drawn, on the page and in plots.
-PlotMark mark_of(const CompareRow&, double error);
-
 // The result as tables for people, as CSV (a row a scene and setting) and as JSON with everything.
 std::string compare_table(const CompareResult&);
 // One page that needs no other file: for each scene error against run time with the front and the floor, the table
@@ -48,6 +44,5 @@ std::string compare_page(const Comparison&, const CompareResult&);
 std::string compare_csv(const CompareResult&);
 std::string compare_json(const CompareResult&);
 void write_compare_hdf5(const std::filesystem::path&, const CompareResult&);
-std::string plot_comparison(const CompareResult&, const std::filesystem::path& folder);  // a line that says which
 
 }  // namespace selvedge

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "pipeline/compare/compare.hpp"
+#include "pipeline/compare/compare_plots.hpp"
 #include "pipeline/compare/evaluation.hpp"
 #include "pipeline/host/html_text.hpp"
 #include "pipeline/measures/run_measures.hpp"
+#include "pipeline/plots/page_html.hpp"
 #include "pipeline/tools/info.hpp"
 
 namespace selvedge {
@@ -18,10 +21,7 @@ constexpr const char* page_style =
     "h1{font-size:1.5em}h2{font-size:1.2em;margin-top:2em;border-top:1px solid #ccc;padding-top:.8em}"
     "figure{display:inline-block;margin:0 1em 1em 0;vertical-align:top}figcaption{font-weight:600}"
     "figure p{margin:.2em 0;max-width:620px}"
-    "svg{font:11px system-ui,sans-serif}svg .grid{stroke:#e4e4e4}svg .floor{fill:#f0ead8}"
-    "circle.plain{fill:#555}circle.front{fill:#d62728}circle.unclean{fill:#fff;stroke:#555;stroke-width:1.5}"
-    "polyline.front{fill:none;stroke:#d62728;stroke-width:1.5}.failed path{stroke:#b00;stroke-width:2.5}"
-    "svg .number{font-size:10px;fill:#444}.wide{overflow-x:auto}"
+    ".wide{overflow-x:auto}"
     "table{border-collapse:collapse;font-size:13px;margin:.6em 0}td,th{padding:.15em .55em;text-align:right;"
     "border-bottom:1px solid #eee;white-space:nowrap}th{background:#f6f6f6}td:first-child,th:first-child,.left"
     "{text-align:left}tr.front td{background:#fdeeee}tr.trouble td{color:#a00}pre{background:#f6f6f6;padding:.6em;"
@@ -70,12 +70,14 @@ std::string cell(double value, const char* format) {
 }
 
 bool is_there(const CompareRow& row) { return std::isfinite(row.ms); }
+
+// Points are numbered as the rows of the table below the plot.
 template <class Error>
-std::string plot_of(const std::string& title, const std::string& y, const std::vector<const CompareRow*>& rows,
-                    double floor, const Error& error) {
-  std::vector<PlotPoint> points;
-  for (const CompareRow* row : rows) points.push_back({row->setting, row->ms, error(*row), mark_of(*row, error(*row))});
-  return scatter_svg(title, "ms a frame", y, points, floor);
+std::string numbered_plot(const std::string& title, const std::vector<const CompareRow*>& rows, double floor,
+                          const Error& error) {
+  std::vector<ComparedPoint> points;
+  for (const CompareRow* row : rows) points.push_back({row, std::to_string(points.size() + 1), error(*row)});
+  return page_figure(plot_svg(error_plot(title, "RMS [mm]", floor, points)));
 }
 
 // Only columns that some row has.
@@ -156,10 +158,10 @@ std::string scene_section(const CompareFloor& floor, const CompareResult& result
         1000 * floor.jittered);
   html += ".</p>\n";
   if (floor.states > 0) {
-    html += plot_of(fmt::format("Distance to the temporal reference after {} frames", floor.horizon), "RMS [mm]", rows,
-                    1000 * floor.floor(), [](const CompareRow& r) { return 1000 * r.temporal; });
-    html += plot_of("Distance to the algebraic reference after one frame", "RMS [mm]", rows, 0,
-                    [](const CompareRow& r) { return 1000 * r.measure("algebraic_1"); });
+    html += numbered_plot(fmt::format("Distance to the temporal reference after {} frames", floor.horizon), rows,
+                          1000 * floor.floor(), [](const CompareRow& r) { return 1000 * r.temporal; });
+    html += numbered_plot("Distance to the algebraic reference after one frame", rows, 0,
+                          [](const CompareRow& r) { return 1000 * r.measure("algebraic_1"); });
   }
   html += rows_table(rows, floor.states > 0) + break_even(rows);
   if (std::filesystem::path view = result.views / (floor.scene + ".html");
@@ -169,16 +171,22 @@ std::string scene_section(const CompareFloor& floor, const CompareResult& result
   return html;
 }
 
+// The frames 0, 1, 2 and so on.
+std::vector<double> by_frame(std::size_t count) {
+  std::vector<double> frames(count);
+  std::iota(frames.begin(), frames.end(), 0.0);
+  return frames;
+}
+
 std::string evaluation_section(const Evaluation& e) {
   std::string html = "<h2>Evaluation</h2><pre>" + html_text(evaluation_text(e)) + "</pre>\n";
-  std::vector<PlotCurve> left, pairs, speeds;
+  Plot left{fmt::format("Part of the first pairs that is left, mean over {} tangled starts", e.tangled), {"frame"}};
   for (const EvaluatedRow& row : e.rows)
-    if (!row.left.empty()) left.push_back({row.row, row.left});
-  for (const auto& [row, by_frame] : e.by_frame)
-    pairs.push_back({row, std::vector<double>(by_frame.begin(), by_frame.end())});
-  html += curves_svg(fmt::format("Part of the first pairs that is left, mean over {} tangled starts", e.tangled),
-                     "frame", left);
-  html += curves_svg("Pairs by frame, " + e.shown, "frame", pairs, true);
+    if (!row.left.empty()) left.curves.push_back({row.row, by_frame(row.left.size()), row.left});
+  Plot pairs{"Pairs by frame, " + e.shown, {"frame"}, {"pairs", PlotScale::counts}};
+  for (const auto& [row, counts] : e.by_frame)
+    pairs.curves.push_back({row, by_frame(counts.size()), std::vector<double>(counts.begin(), counts.end())});
+  html += page_figure(plot_svg(left)) + page_figure(plot_svg(pairs));
   html += "<table><tr><th>frames a second</th>";
   for (std::size_t k = 0; k < e.outfits.size(); ++k)
     html += fmt::format("<th>{} ({} nodes)</th>", html_text(e.outfits[k]), e.vertices[k]);

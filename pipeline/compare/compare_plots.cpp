@@ -1,75 +1,23 @@
+#include "pipeline/compare/compare_plots.hpp"
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "pipeline/compare/compare.hpp"
-#include "pipeline/host/gnuplot.hpp"
+#include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
 
-// Lines "ms error name" of a scene's rows with one of the marks, the fastest first.
-template <class Error>
-std::string points_of(const CompareResult& result, const std::string& scene, Error error,
-                      std::initializer_list<PlotMark> marks) {
-  std::vector<const CompareRow*> kept;
-  for (const CompareRow& row : result.rows)
-    if (row.scene == scene && std::isfinite(row.ms) && error(row) > 0 &&
-        std::ranges::find(marks, mark_of(row, error(row))) != marks.end())
-      kept.push_back(&row);
-  std::sort(kept.begin(), kept.end(), [](const CompareRow* a, const CompareRow* b) { return a->ms < b->ms; });
-  std::string text;
-  for (const CompareRow* row : kept) {
-    std::string name = row->setting;  // gnuplot reads an underscore as a subscript, and lines one by one
-    std::ranges::replace_if(
-        name, [](unsigned char c) { return c < ' ' || c == '_' || c == '"' || c == '\\'; }, ' ');
-    text += fmt::format("{:.6g} {:.6g} \"{}\"\n", row->ms, error(*row), name);
-  }
-  return text;
-}
+// What is plotted of a row, and in which unit.
+struct PlottedError {
+  const char *name, *title, *unit;
+  double factor;
+  bool has_floor;
+};
+constexpr PlottedError plotted_errors[]{{"temporal", "distance to the temporal reference", "RMS [mm]", 1000, true},
+                                        {"algebraic", "algebraic error of a step", "part of its motion", 1, false}};
 
-// Ticks at 1, 2 and 5 of every decade.
-std::string ticks() {
-  std::string list;
-  for (int decade = -6; decade <= 5; ++decade)
-    for (const int digit : {1, 2, 5}) list += fmt::format("{}{}e{}", list.empty() ? "" : ", ", digit, decade);
-  return list;
-}
-
-std::string axes() {
-  return fmt::format(
-      "set key outside bottom center horizontal\nset logscale xy\nset autoscale fix\n"
-      "set offsets graph 0.03, graph 0.25, graph 0.05, graph 0.05\nset xlabel 'ms a frame'\n"
-      "set xtics ({0})\nset ytics ({0})\n",
-      ticks());
-}
-
-// The rows of a scene as on the page: the front a red line, open circles for what intersects, crosses for what failed.
-template <class Error>
-std::string scene_plot(const CompareResult& result, const CompareFloor& floor, const std::string& y, Error error,
-                       bool with_floor) {
-  using enum PlotMark;
-  struct Group {
-    std::initializer_list<PlotMark> marks;
-    const char *name, *style;
-  };
-  const Group groups[]{{{front}, "front", "linespoints pt 7 ps 0.9 lc rgb '#d62728' title 'efficient front'"},
-                       {{plain}, "plain", "points pt 7 ps 0.7 lc 'black' title 'clean'"},
-                       {{unclean}, "unclean", "points pt 6 ps 0.8 lc 'black' title 'intersects'"},
-                       {{failed}, "failed", "points pt 2 ps 0.8 lc rgb '#d62728' title 'failed'"}};
-  const std::string all = points_of(result, floor.scene, error, {front, plain, unclean, failed});
-  if (all.empty()) return {};
-  std::string data = "$all << EOD\n" + all + "EOD\n", plots;
-  if (with_floor && floor.floor() > 0)
-    plots = fmt::format("{:.6g} with lines dt 2 lc 'gray' title 'floor', ", floor.floor());
-  for (const Group& group : groups)
-    if (const std::string points = points_of(result, floor.scene, error, group.marks); !points.empty()) {
-      data += fmt::format("${} << EOD\n{}EOD\n", group.name, points);
-      plots += fmt::format("${} using 1:2 with {}, ", group.name, group.style);
-    }
-  return "set ylabel '" + y + "'\n" + data + "plot " + plots +
-         "$all using 1:2:3 with labels left offset char 0.7,0 font ',8' notitle\n";
+double error_of(const CompareRow& row, const PlottedError& error) {
+  return error.has_floor ? row.temporal : row.algebraic;
 }
 
 }  // namespace
@@ -79,21 +27,34 @@ PlotMark mark_of(const CompareRow& row, double error) {
   return row.front ? PlotMark::front : is_clean(row) ? PlotMark::plain : PlotMark::unclean;
 }
 
-std::string plot_comparison(const CompareResult& result, const std::filesystem::path& folder) {
-  if (!gnuplot_is_there()) return no_gnuplot;
-  std::string made;
-  const auto plot = [&](const std::string& name, const std::string& body) {
-    if (!body.empty() && make_plot(folder, name, axes() + body, "760,520"))
-      made += (made.empty() ? "plots: " : ", ") + (folder / (name + ".svg")).string();
-  };
-  for (const CompareFloor& floor : result.floors) {
-    plot(floor.scene + "_temporal",
-         scene_plot(
-             result, floor, "distance to the reference [m]", [](const CompareRow& row) { return row.temporal; }, true));
-    plot(floor.scene + "_algebraic", scene_plot(
-                                         result, floor, "algebraic error of a step, of its motion",
-                                         [](const CompareRow& row) { return row.algebraic; }, false));
+Plot error_plot(const std::string& title, const std::string& y_name, double floor,
+                const std::vector<ComparedPoint>& rows) {
+  Plot plot;
+  plot.title = title;
+  plot.x = {"ms a frame", PlotScale::logarithmic};
+  plot.y = {y_name, PlotScale::logarithmic};
+  plot.floor = floor;
+  for (const auto& [row, label, error] : rows) {
+    const std::string about = fmt::format("{}: {:.3g} at {:.3g} ms", row->setting, error, row->ms);
+    plot.points.push_back({label, row->ms, error, mark_of(*row, error), about});
   }
+  return plot;
+}
+
+std::string plot_comparison(const CompareResult& result, const std::filesystem::path& folder) {
+  std::string made;
+  for (const CompareFloor& floor : result.floors)
+    for (const PlottedError& error : plotted_errors) {
+      std::vector<ComparedPoint> points;
+      for (const CompareRow& row : result.rows)
+        if (row.scene == floor.scene) points.push_back({&row, row.setting, error.factor * error_of(row, error)});
+      const std::string svg = plot_svg(error_plot(floor.scene + ": " + error.title, error.unit,
+                                                  error.has_floor ? error.factor * floor.floor() : 0, points));
+      if (svg.empty()) continue;
+      const std::filesystem::path file = folder / fmt::format("{}_{}.svg", floor.scene, error.name);
+      write_file(file, svg);
+      made += (made.empty() ? "plots: " : ", ") + file.string();
+    }
   return made.empty() ? "no plots: there is nothing to show" : made;
 }
 

@@ -65,7 +65,7 @@ const Options<ComparedDrapes>& compared_drapes_options() {
        text("name", &O::name, "Name of the training. Default: that of the folder."),
        choice("of", &O::use,
               {{"garments", DrapesUse::garments}, {"gcnn", DrapesUse::graph_network}, {"clips", DrapesUse::clips}},
-              "Tables that the training stands in: those of garments, of graph networks, or of unseen clips."),
+              "Tables that show the training: those of garments, of graph networks, or of unseen clips."),
        flag("counted", &O::counted, "True: the training counts in the means over all garments.")},
       "run");
   return table;

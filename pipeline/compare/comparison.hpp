@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct CompareScene {
   int states = 4, horizon = 6;
   std::string outfit;
   // Of a sequence:
-  bool tangled = false;  // by the generator of training
+  bool tangled = false;         // by the generator of training
+  std::optional<int> sequence;  // number of a tangled one whose start has yet to be found (find_start)
 };
 
 // A row of every scene: a stepper as it is set.

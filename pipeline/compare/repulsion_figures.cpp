@@ -5,7 +5,8 @@
 #include <numeric>
 
 #include "pipeline/compare/repulsion_report.hpp"
-#include "pipeline/compare/svg_plots.hpp"
+#include "pipeline/plots/page_html.hpp"
+#include "pipeline/plots/plot.hpp"
 
 namespace selvedge {
 namespace {
@@ -22,17 +23,17 @@ const DrapeTableRow* first_of(const MeasuredDrapes& drapes, std::initializer_lis
 // How many models have an energy in each of the bins from 0 to `most`. [m2] of squared depths.
 std::string energy_bars(const std::string& title, const std::vector<const DrapeTableRow*>& rows, double most) {
   std::vector<std::string> labels;
-  std::vector<PlotCurve> counts;
+  std::vector<BarPlot::Bars> counts;
   for (std::size_t b = 0; b < energy_bins; ++b)
     labels.push_back(fmt::format("{:.2g}", 1e6 * most * static_cast<double>(b + 1) / energy_bins));
   for (const DrapeTableRow* row : rows) {
-    PlotCurve bars{row->name, std::vector<double>(energy_bins, 0)};
+    BarPlot::Bars bars{row->name, std::vector<double>(energy_bins, 0)};
     for (const double energy : row->energy_by_drape)
       if (const auto bin = static_cast<std::size_t>(std::ceil(energy / most * energy_bins)); bin <= energy_bins)
         ++bars.y[std::max<std::size_t>(bin, 1) - 1];
     counts.push_back(std::move(bars));
   }
-  return bars_svg(title, "penetration energy up to [mm2]", labels, counts);
+  return page_figure(bars_svg({title, "penetration energy up to [mm2]", labels, counts}));
 }
 
 // Figures 6 and 7.
@@ -63,9 +64,11 @@ std::string scales_by_ratio(const MeasuredDrapes& drapes) {
     labels.push_back(b + 1 < bins ? fmt::format("{:.1f}", width * static_cast<double>(b + 1)) : "more");
     sum[b] = count[b] > 0 ? sum[b] / count[b] : 0;
   }
-  return bars_svg(fmt::format("Figure 8, {}: mean scale of {} pushed vertices ({})", drapes.name,
-                              row->ratio_and_alpha.size(), row->name),
-                  "approximate over accurate distance, up to", labels, {{row->name, sum}});
+  return page_figure(bars_svg({fmt::format("Figure 8, {}: mean scale of {} pushed vertices ({})", drapes.name,
+                                           row->ratio_and_alpha.size(), row->name),
+                               "approximate over accurate distance, up to",
+                               labels,
+                               {{row->name, sum}}}));
 }
 
 // Figure 9: five groups of as many test models.
@@ -76,19 +79,19 @@ std::string inside_by_distance(const MeasuredDrapes& drapes) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return drapes.from_training[k]; });
   std::vector<std::string> labels;
-  std::vector<PlotCurve> bars;
+  std::vector<BarPlot::Bars> bars;
   for (const char* name : {"control", "collision_loss", "approximate", "hybrid", "learned"})
     if (const DrapeTableRow* row = first_of(drapes, {name}); row && row->inside_by_drape.size() == order.size())
       bars.push_back({name, std::vector<double>(groups, 0)});
   for (std::size_t g = 0; g < groups; ++g) {
     const std::size_t begin = g * order.size() / groups, end = (g + 1) * order.size() / groups;
     labels.push_back(fmt::format("{:.1f}", drapes.from_training[order[end - 1]]));
-    for (PlotCurve& one : bars)
+    for (BarPlot::Bars& one : bars)
       for (std::size_t k = begin; k < end; ++k)
         one.y[g] += first_of(drapes, {one.name.c_str()})->inside_by_drape[order[k]] / static_cast<double>(end - begin);
   }
-  return bars_svg("Figure 9, " + drapes.name + ": vertices inside [%] by distance to what was trained on",
-                  "distance of parameters over their deviations, up to", labels, bars);
+  return page_figure(bars_svg({"Figure 9, " + drapes.name + ": vertices inside [%] by distance to what was trained on",
+                               "distance of parameters over their deviations, up to", labels, bars}));
 }
 
 }  // namespace

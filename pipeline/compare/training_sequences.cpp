@@ -134,7 +134,7 @@ std::string check_trained(const Comparison& comparison, const std::vector<Traini
     const std::string row = fmt::format("row `{}`: {}", setting.name, weights.filename().string()),
                       record = read_weight_file(weights).trained_on;
     if (record.empty()) {
-      text += "\nwarning: " + row + " does not say what it was trained on: that may be what is held out here";
+      text += "\nwarning: " + row + " has no record of its training data, which may include what is held out here";
       continue;
     }
     const TrainedOn on = read_trained_on(record, weights.string() + ": trained_on");
@@ -145,7 +145,7 @@ std::string check_trained(const Comparison& comparison, const std::vector<Traini
                     weights.string(),
                     "train with the `split` of " + comparison.sequences.training + ", or take the row out");
     text += "\n" + row + " was trained on " + trained_on_text(on);
-    if (!on.whole) text += "\nwarning: " + row + " began with weights that do not say what they were trained on";
+    if (!on.whole) text += "\nwarning: " + row + " began with weights that have no record of their training data";
   }
   return text;
 }

@@ -3,30 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
-#include "pipeline/compare/svg_plots.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/plots/plot.hpp"
 
 namespace selvedge {
 namespace {
 
-// The columns of a table by frame behind the first.
-std::vector<PlotCurve> volume_curves(const std::string& csv) {
-  std::vector<PlotCurve> curves;
-  std::istringstream lines(csv);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string word;
-    std::getline(words, word, ',');
-    const bool names = word == "frame";
-    for (std::size_t k = 0; std::getline(words, word, ','); ++k)
-      if (names)
-        curves.push_back({word, {}});
-      else if (!word.empty() && k < curves.size())
-        curves[k].y.push_back(1e3 * std::stod(word));
+// All columns of a table by frame [mJ].
+std::string volume_plot(const std::string& group, const std::string& csv) {
+  const CsvColumns table(csv);
+  Plot plot{"L_sc by frame, mean over sequences: " + group, {"frame"}, {"mJ", PlotScale::counts}};
+  for (const std::string& name : table.names) {
+    if (name == "frame") continue;
+    std::vector<double> energies = table[name];
+    for (double& energy : energies) energy *= 1e3;
+    plot.curves.push_back({name, table["frame"], std::move(energies)});
   }
-  return curves;
+  return plot_svg(plot);
 }
 
 }  // namespace
@@ -44,8 +39,7 @@ std::string write_volume_report(const std::vector<KeptRun>& runs, const std::str
   for (const std::string& group : groups) {
     const std::string csv = volume_by_frame_csv(sequences, group);
     write_file(folder / fmt::format("volume_{}.csv", group), csv);
-    write_file(folder / fmt::format("volume_{}.svg", group),
-               curves_svg("L_sc by frame, mean over sequences [mJ]: " + group, "frame", volume_curves(csv), true));
+    write_file(folder / fmt::format("volume_{}.svg", group), volume_plot(group, csv));
   }
   return table;
 }

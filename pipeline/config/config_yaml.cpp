@@ -13,7 +13,12 @@ namespace {
 
 YAML::Node loaded(const std::string& text, const std::string& where) {
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    for (std::size_t i = 1; i < documents.size(); ++i)
+      if (!documents[i].IsNull())
+        throw Error("holds more than one YAML document", where,
+                    "keep one, and a file for each other: a line `---` begins another");
+    return documents.empty() ? YAML::Node() : documents[0];
   } catch (const YAML::Exception& e) {
     throw Error("is not YAML: " + e.msg, e.mark.is_null() ? where : fmt::format("{}:{}", where, e.mark.line + 1),
                 "look there and in the lines before it: brackets and quotes that are not closed, tabs, other indents");
@@ -204,6 +209,15 @@ Config read_section(const std::string& yaml, const Section& section, const std::
   count_values(root, where, 0, left);
   for (const auto& pair : root) origin.overrides.push_back({pair.first.Scalar(), where});
   return checked_section(root, section, "", where, origin);
+}
+
+std::map<std::string, std::string> top_keys(const std::filesystem::path& file, const std::string& noun) {
+  const YAML::Node root = loaded(read_text_file(file, noun), file.string());
+  if (!root.IsMap()) throw Error("is not a list of `key: value`", file.string(), "write each key on a line of its own");
+  std::map<std::string, std::string> keys;
+  for (const auto& pair : root)
+    if (pair.first.IsScalar()) keys[pair.first.Scalar()] = pair.second.IsScalar() ? pair.second.Scalar() : "";
+  return keys;
 }
 
 std::string quoted_yaml(const std::string& text) {

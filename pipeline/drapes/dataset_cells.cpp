@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "collision/geometry/error.hpp"
@@ -10,6 +11,7 @@
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/numbers_json.hpp"
+#include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/run/progress.hpp"
 
@@ -60,14 +62,20 @@ DatasetSummary open_dataset(DatasetWork& work, const std::filesystem::path& fold
   return summary;
 }
 
-// The path's file in the set is its cell's, under another name where the file system has that; else a copy.
-void put_into_set(const std::filesystem::path& folder, int number, const std::string& cell) {
-  const std::filesystem::path file = path_of_cell(cell_folder(folder, cell));
-  const std::filesystem::path place = drape_path_file(folder, number);
-  remove_file(place);
+std::string cell_of_path(int number) { return fmt::format("path_{:04d}", number); }
+
+// The path's file in the set is its cell's, under another name where the file system has that; else a copy. It takes
+// its place whole.
+void put_into_set(const std::filesystem::path& folder, int number) {
+  const std::filesystem::path file = path_of_cell(cell_folder(folder, cell_of_path(number)));
+  const std::filesystem::path place = drape_path_file(folder, number), beside = path_beside(place);
   std::error_code trouble;
-  std::filesystem::create_hard_link(file, place, trouble);
-  if (trouble) std::filesystem::copy_file(file, place);
+  if (std::filesystem::equivalent(file, place, trouble)) return;
+  std::filesystem::create_hard_link(file, beside, trouble);
+  if (trouble)
+    write_file(place, read_file(file, "drape"));
+  else
+    rename_file(beside, place);
 }
 
 // Counts a path that is in the set. Returns its line of drapes.csv.
@@ -96,11 +104,10 @@ constexpr const char* dataset_columns = "path,split,drapes,dropped,poses_redrawn
 
 CellTables gather_paths(DatasetWork& work, const std::vector<CellRecord>& records, const std::filesystem::path& out) {
   DatasetSummary summary = open_dataset(work, out);
-  for (const CellRecord& record : records)
-    put_into_set(out, nlohmann::json::parse(record.result.row).value("path", 0), record.cell);
   std::string table = dataset_columns;
   int there = 0;
   for (int k = 0; k < work.paths(); ++k) {
+    if (std::ranges::find(records, cell_of_path(k), &CellRecord::cell) != records.end()) put_into_set(out, k);
     if (!std::filesystem::exists(drape_path_file(out, k))) continue;
     table += add_path(work, k, summary, nullptr);
     ++there;
@@ -114,11 +121,11 @@ CellList list_of(const std::shared_ptr<DatasetWork>& work) {
   CellList list;
   list.kind = "dataset";
   list.program = program_key();
-  for (int k = 0; k < work->paths(); ++k) list.names.push_back(fmt::format("path_{:04d}", k));
+  for (int k = 0; k < work->paths(); ++k) list.names.push_back(cell_of_path(k));
   list.describe = [work, names = list.names](std::size_t k) {
     const DrapeOptions& options = work->options;
     constexpr int vertices = 1000;  // of most garments at most edge lengths
-    const int frames = options.poses * (options.move_frames + options.settle_frames);
+    const double frames = 1.0 * options.poses * (options.move_frames + options.settle_frames);
     return WorkCell{names[k], {work->config}, rough_seconds(vertices, frames)};
   };
   list.key = [work](std::size_t) { return fmt::format("{:016x}", hash_of(drape_yaml(work->options))); };
@@ -154,7 +161,7 @@ DatasetSummary make_dataset(const DatasetRequest& request) {
     const auto number = static_cast<std::size_t>(k);
     if (!std::filesystem::exists(drape_path_file(folder, k))) {
       if (!do_cell(list, number, folder, {request.log, request.stop})) return summary;
-      put_into_set(folder, k, list.names[number]);
+      put_into_set(folder, k);
     }
     table += add_path(*work, k, summary, request.log);
   }

@@ -10,9 +10,10 @@
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
+#include "pipeline/plots/page_html.hpp"
 #include "pipeline/processes/together.hpp"
 #include "pipeline/run/progress.hpp"
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/training/column_plots.hpp"
 
 namespace selvedge {
 namespace {
@@ -73,12 +74,17 @@ std::string drape_page(const DrapeTraining& training, const std::vector<DrapeTab
     const std::filesystem::path file = training.stage.folder / (stage + ".csv");
     if (!std::filesystem::exists(file)) continue;
     const CsvColumns columns(read_file(file, "table"));
-    const std::vector<double>& at = columns["step"];
-    page += chart(stage + ": losses", at,
-                  columns_of(columns, {"reconstruction", "collision", "value", "surface_gradient", "eikonal"}), true);
-    page += chart(stage + ": error of vertices (before a layer) or of distances on what is kept apart [mm]", at,
-                  columns_of(columns, {"validation_mm", "error_mm", "near_mm"}), false);
-    page += chart(stage + ": mean scale of pushed vertices", at, columns_of(columns, {"alpha"}), false);
+    page += column_plot(stage + ": losses", {"", PlotScale::logarithmic}, columns,
+                        {{"reconstruction", "reconstruction"},
+                         {"collision", "collision"},
+                         {"value", "distance"},
+                         {"surface_gradient", "gradient at the surface"},
+                         {"eikonal", "eikonal"}});
+    page += column_plot(stage + ": errors on what is kept apart", {"mm"}, columns,
+                        {{"validation_mm", "vertices, before a layer"},
+                         {"error_mm", "distances"},
+                         {"near_mm", "distances near the body"}});
+    page += column_plot(stage + ": mean scale of pushed vertices", {}, columns, {{"alpha", "scale"}});
   }
   return page + page_text("Drapes to measure on", drape_table_text(table)) +
          page_text("Configuration", drape_training_yaml(run.options));

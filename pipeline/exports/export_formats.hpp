@@ -17,7 +17,7 @@ struct ExportRequest {
   std::function<void(int done, int all)> progress{};  // of frames read, over all passes; may be empty
   std::filesystem::path onto = {};  // a mesh (OBJ, PLY) at the rest shape of cloths, which takes their place
   std::string onto_unit = "m";      // unit of its coordinates
-  std::function<void(const std::string&)> warn = {};  // is told what of that mesh cannot be read; may be empty
+  std::function<void(const std::string&)> warn = {};  // gets what of that mesh cannot be read; may be empty
   std::string cloth = {};                             // the cloth whose place it takes; empty: all
 
   std::filesystem::path file(const std::string& name) const;  // of the folder, which it makes
@@ -69,13 +69,13 @@ inline int reads_of_usda(const AnimatedSurfaces& run) {
 
 // All formats that `selvedge export` writes; docs/export.md says more of each. How to add one: docs/extending.md.
 inline constexpr ExportFormat export_formats[]{
-    {"obj", "a mesh a frame", [](const AnimatedSurfaces& run) { return run.frame_count; }, export_meshes},
-    {"ply", "a mesh a frame", [](const AnimatedSurfaces& run) { return run.frame_count; }, export_meshes},
+    {"obj", "one mesh for each frame", [](const AnimatedSurfaces& run) { return run.frame_count; }, export_meshes},
+    {"ply", "one mesh for each frame", [](const AnimatedSurfaces& run) { return run.frame_count; }, export_meshes},
     {"pc2", "a point cache", reads_of_point_caches, export_point_caches},
     {"mdd", "a point cache", reads_of_point_caches, export_point_caches},
     {"glb", "glTF", [](const AnimatedSurfaces& run) { return 2 * run.frame_count; }, export_glb},
     {"usda", "USD", reads_of_usda, export_usda},
-    {"xdmf", "a sidecar of the trajectory", [](const AnimatedSurfaces&) { return 0; },
+    {"xdmf", "a file beside the trajectory for ParaView", [](const AnimatedSurfaces&) { return 0; },
      [](const AnimatedSurfaces&, const ExportRequest& request) {
        return std::vector<std::filesystem::path>{write_xdmf(request.trajectory)};
      }}};

@@ -1,5 +1,8 @@
 #include "pipeline/host/kept_rows.hpp"
 
+#include <dlfcn.h>
+#include <link.h>
+
 #include <fmt/format.h>
 
 #include <fstream>
@@ -30,6 +33,12 @@ std::uint64_t hash_of_file(const std::filesystem::path& path) {
   return hash;
 }
 
-std::string program_key() { return fmt::format("{:016x}", hash_of(whole_file("/proc/self/exe"))); }
+std::string program_key() {
+  Dl_info found = {};
+  link_map* loaded = nullptr;  // its name is empty for the program itself
+  dladdr1(reinterpret_cast<void*>(&program_key), &found, reinterpret_cast<void**>(&loaded), RTLD_DL_LINKMAP);
+  const bool extension = loaded && loaded->l_name && *loaded->l_name;
+  return fmt::format("{:016x}", hash_of_file(extension ? loaded->l_name : "/proc/self/exe"));
+}
 
 }  // namespace selvedge

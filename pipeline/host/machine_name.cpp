@@ -2,9 +2,11 @@
 
 #include <unistd.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <fstream>
+
+#include "collision/geometry/counted.hpp"
+#include "collision/geometry/parallel.hpp"
 
 namespace selvedge {
 namespace {
@@ -25,10 +27,6 @@ std::string host_name() {
   return name.data();
 }
 
-std::string machine_name() {
-  const int threads = Eigen::nbThreads();
-  return host_name() + ", " + processor_name() + ", " + std::to_string(threads) +
-         (threads == 1 ? " thread" : " threads");
-}
+std::string machine_name() { return host_name() + ", " + processor_name() + ", " + counted(most_threads(), "thread"); }
 
 }  // namespace selvedge

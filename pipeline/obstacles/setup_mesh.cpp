@@ -47,7 +47,7 @@ void refuse_far(const Config& at, const std::string& noun, const Points& x) {
   for (Eigen::Index v = 0; v < x.rows(); ++v)
     if (!(x.row(v).cwiseAbs().maxCoeff() <= largest_length))
       at.fail(fmt::format("puts vertex {} of {} at [{:.4g}, {:.4g}, {:.4g}] m", v, noun, x(v, 0), x(v, 1), x(v, 2)),
-              fmt::format("repair it where it was made, or give its unit; up to {:g} m from the origin is allowed",
+              fmt::format("correct its file, unit, `scale` or `translate`; up to {:g} m from the origin is allowed",
                           largest_length));
 }
 

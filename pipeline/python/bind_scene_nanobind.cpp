@@ -141,7 +141,7 @@ void bind_scene(nb::module_& module) {
       .def("restore", &SceneObject::restore, "file"_a,
            "Goes back to a state that save wrote of this scene, or of one that was made of the same arrays or files. "
            "The next steps have the same bits.")
-      .def("_record", &SceneObject::record, "file"_a, "Records the present state and every frame after it.")
+      .def("_record", &SceneObject::record, "folder"_a, "Records the present state and every frame after it.")
       .def("_end_recording", &SceneObject::end_recording, "Closes the file of a recording.")
       .def("__repr__", &SceneObject::described)
       .def_prop_ro(

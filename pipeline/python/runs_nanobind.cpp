@@ -13,10 +13,10 @@
 #include "pipeline/python/fields_nanobind.hpp"
 #include "pipeline/python/python_stop_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/run/running_mark.hpp"
 #include "pipeline/tools/export.hpp"
 #include "pipeline/tools/fit_report.hpp"
 #include "pipeline/tools/plan.hpp"
-#include "pipeline/training/running_mark.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {
@@ -86,18 +86,14 @@ nb::object train_of(const Path& config, const std::optional<Path>& out, const Te
 }
 
 nb::object compare_file(const Path& file, const nb::dict& kinds, const Path& out, const Texts& overrides,
-                        bool short_form) {
+                        bool short_form, const nb::object& log) {
   CompareRequest request;
   request.file = file;
   request.kinds = kinds_with(kinds, std::make_shared<HeldObjects::element_type>());
   request.out = out;
   request.overrides = overrides;
   request.short_form = short_form;
-  request.stop = [] {
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();  // Ctrl-C
-    return false;
-  };
-  const CompareResult result = compare(request);
+  const CompareResult result = followed_by(std::move(request), log, compare);
   nb::object rows = object_of_json(compare_json(result));
   rows["table"] = compare_table(result);
   return rows;
@@ -146,10 +142,11 @@ void bind_runs(nb::module_& module) {
              "checkpoint. log: called with a line now and then; None: silent. Ctrl-C ends it at a checkpoint. Returns "
              "what `selvedge train --json` prints, a dict.");
   module.def("compare", &compare_file, "file"_a, "kinds"_a = nb::dict(), "out"_a = Path("out/compare"),
-             "overrides"_a = Texts{}, "short"_a = false,
+             "overrides"_a = Texts{}, "short"_a = false, "log"_a.none() = print,
              "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "
              "What is finished is kept in the folder out, by the file's settings: empty it when a class has changed. "
-             "Returns what compare.json holds, and table, a text.");
+             "log: called with a line as each part ends; None: silent. Ctrl-C keeps the parts that are done. Returns "
+             "what compare.json holds, and table, a text.");
   module.def("export_run", &export_run, "run"_a, "format"_a, "out"_a, "obstacles"_a, "progress"_a.none(),
              "What selvedge.export calls. progress: called with the frames that were read and their number; or None.");
   module.def("page_of", &page_of, "runs"_a, "limit"_a, "The page that selvedge.view shows, as HTML.");

@@ -51,6 +51,14 @@ Material material_of(const nb::object& material, const std::string& where) {
   return read_material(section, {});
 }
 
+// Further keys of a section, which have no part of it that the arguments say.
+nb::dict further_keys(const nb::kwargs& keys, const char* said, const std::string& where) {
+  if (keys.contains(said)) throw Error("is what the arguments say", where + ", " + said, "leave it out");
+  nb::dict all;
+  for (const auto& [key, value] : keys) all[key] = value;
+  return all;
+}
+
 BodyModel body_of_arrays(const std::string& name, const nb::handle& x, const nb::handle& triangles,
                          const nb::handle& joints, const nb::handle& weights, const nb::handle& parents,
                          const nb::object& joint_names, const std::string& where) {
@@ -152,11 +160,10 @@ int SceneObject::add_garment_arrays(const nb::handle& x, const nb::handle& trian
   Mesh mesh;
   mesh.x = points_of(x, where + ", x");
   mesh.triangles = triangles_of(triangles, mesh.x.rows(), where + ", triangles");
-  nb::dict worn, all;
+  nb::dict worn, all = further_keys(keys, "garment", where);
   worn["file"] = "arrays";
   worn["fit"] = fit;
   if (!on.is_none()) worn["on"] = on;
-  for (const auto& [key, value] : keys) all[key] = value;
   all["name"] = name;
   all["garment"] = worn;
   all["material"] = material_keys(material);
@@ -186,54 +193,56 @@ int SceneObject::add_body_arrays(const nb::handle& x, const nb::handle& triangle
                                  const std::string& name, const nb::object& room, const nb::kwargs& keys) {
   must_be_open();
   const std::string where = "body `" + name + "`";
-  nb::dict model, all;
+  nb::dict model, all = further_keys(keys, "body", where);
   model["model"] = "arrays";
   if (!room.is_none()) model["room"] = room;
-  for (const auto& [key, value] : keys) all[key] = value;
   all["name"] = name;
   all["body"] = model;
   const Config section = section_of(all, table::obstacle_section(), where);
   const auto who = std::make_shared<Performance>(
       figure_of(body_of_arrays(name, x, triangles, joints, weights, parents, joint_names, where), where));
   warn_of_crossings(where, own_crossings(who->body, who->shape), who->warnings);
-  if (poses.is_none() != true)
+  if (!poses.is_none())
     perform_clip(clip_of_arrays(who->body, poses, translations, fps, where), section["body"], section["body"], *who);
   else if (!translations.is_none())
     throw Error("is given without poses", where + ", translations", "give poses, or place the body with `translate`");
   place_performance(section, name, *who);
   warn(who->warnings);
   const ObstaclePart part = obstacle_of(who);
-  obstacles_.push_back(part.at(0));
-  check_positions(obstacles_.back(), where);
+  Points first = part.at(0);
+  check_positions(first, where);
+  setup_.scene.obstacles.push_back(part.obstacle);
+  obstacles_.push_back(std::move(first));
   joined_.emplace_back();
   bodies_.push_back(who);
   body_frames_.push_back(part.body);
-  setup_.scene.obstacles.push_back(part.obstacle);
   return static_cast<int>(obstacles_.size()) - 1;
 }
 
 int SceneObject::add_obstacle_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name) {
   must_be_open();
   const std::string noun = "obstacle `" + name + "`";
-  obstacles_.push_back(points_of(x, noun + ", x"));
-  Triangles faces = triangles_of(triangles, obstacles_.back().rows(), noun + ", triangles");
-  if (obstacles_.back().allFinite()) turn_outward_warning(noun, obstacles_.back(), faces);
-  const int number = add_obstacle(setup_.scene, static_cast<int>(obstacles_.back().rows()), faces, true, name);
-  joined_.emplace_back();
+  Points first = points_of(x, noun + ", x");
+  Triangles faces = triangles_of(triangles, first.rows(), noun + ", triangles");
+  turn_outward_warning(noun, first, faces);
+  const int number = add_obstacle(setup_.scene, static_cast<int>(first.rows()), faces, true, name);
+  std::vector<int> joined;
+  Surface& surface = setup_.scene.obstacles.back().surface;
+  if (std::optional<WeldedSurface> welded = welded_surface(surface, same_places(first))) {
+    surface = std::move(welded->surface);
+    joined = std::move(welded->joined);
+    hold_together(joined, first);
+  }
+  obstacles_.push_back(std::move(first));
+  joined_.push_back(std::move(joined));
   bodies_.emplace_back();
   body_frames_.emplace_back();
-  if (!obstacles_.back().allFinite()) return number;
-  Surface& surface = setup_.scene.obstacles.back().surface;
-  if (std::optional<WeldedSurface> welded = welded_surface(surface, same_places(obstacles_.back()))) {
-    surface = std::move(welded->surface);
-    joined_.back() = std::move(welded->joined);
-    hold_together(joined_.back(), obstacles_.back());
-  }
   return number;
 }
 
 void SceneObject::move_obstacle(int number, const nb::handle& x) {
-  begin();
+  must_rest();
+  ensure_begun();
   const std::string where = "obstacle " + std::to_string(number);
   if (number < 0 || number >= std::ssize(obstacles_)) throw Error("is not there", where, "number obstacles from 0");
   if (bodies_[static_cast<std::size_t>(number)])

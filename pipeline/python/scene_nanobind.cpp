@@ -7,16 +7,19 @@
 #include <algorithm>
 #include <ranges>
 
+#include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "physics/frame/make_frame.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
+#include "pipeline/host/write_file.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/python_stop_nanobind.hpp"
 #include "pipeline/run/memory_forms.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/record_frame.hpp"
+#include "pipeline/run/run_folder.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup_start.hpp"
@@ -33,7 +36,7 @@ State prepared(const Setup& setup) {
   const StopFlag flag = [&] { return stop.asked(); };
   std::optional<Start> start;
   {
-    const nb::gil_scoped_acquire lock;  // whoever calls this may have let go of it
+    const nb::gil_scoped_acquire lock;  // the caller may have released it
     const nb::gil_scoped_release unlocked;
     start = prepare(setup, flag, nullptr, flag);
   }
@@ -56,6 +59,10 @@ Points stacked(const std::vector<ClothPart>& parts, Points ClothPart::*rows) {
 
 }  // namespace
 
+SceneTurn::SceneTurn(std::atomic<bool>& taken) : taken_(taken) {
+  if (taken.exchange(true)) throw Error("is being stepped", "scene", "let one thread at a time work on a scene");
+}
+
 SceneObject::SceneObject(const nb::object& stepper)
     : make_(stepper.is_none() ? conventional_maker() : python_maker("python", stepper, held_)) {
   setup_.run.fps = 30;
@@ -70,11 +77,13 @@ SceneObject::SceneObject(const std::filesystem::path& file, const std::vector<st
 }
 
 SteppedFrame SceneObject::next_frame(const StopFlag& stop) {
+  auto turn = std::make_unique<SceneTurn>(turn_);
   begin();
   check_state(setup_.scene, state_);  // whose arrays Python may have written to
   const Clock::time_point started = Clock::now();
   const double dt = 1 / setup_.run.fps;
   SteppedFrame made;
+  made.turn = std::move(turn);
   made.drive = setup_.drive_at(state_.time + dt);
   StepExtras extras;
   extras.stop = stop;
@@ -107,10 +116,15 @@ bool SceneObject::step() {
   return keep(*std::move(made));
 }
 
-void SceneObject::record(const std::filesystem::path& file) {
-  begin();
+void SceneObject::record(const std::filesystem::path& folder) {
+  if (recording_) throw Error("is recorded already", "scene", "end that recording first");
+  ensure_begun();
+  make_folder(folder);
+  auto lock = std::make_unique<FolderLock>(folder);
+  remove_results(folder);
   const TrajectoryInfo info = trajectory_info(setup_.scene, setup_.config, stepper_->traits().name, setup_.run.fps);
-  recording_.reset(new Recording{TrajectoryWriter(file, info), energy_terms(setup_.scene, stepper_->traits())});
+  recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", info),
+                                 energy_terms(setup_.scene, stepper_->traits())});
   recording_->writer.append(record_initial(setup_.scene, recording_->terms, state_, setup_.drive_at(state_.time)));
 }
 
@@ -120,13 +134,14 @@ void SceneObject::end_recording() {
 }
 
 void SceneObject::save(const std::filesystem::path& file) {
-  begin();
+  ensure_begun();
   check_state(setup_.scene, state_);
   write_checkpoint(file, state_, run_inputs(setup_));
 }
 
 void SceneObject::restore(const std::filesystem::path& file) {
-  begin();
+  must_rest();
+  ensure_begun();
   Checkpoint saved = read_checkpoint(file);
   check_fits(file, saved.state, setup_.scene);
   if (const auto problem = misfit(saved.state.memory, setup_.scene))
@@ -142,23 +157,19 @@ void SceneObject::restore(const std::filesystem::path& file) {
 }
 
 State& SceneObject::state() {
-  begin();
+  ensure_begun();
   return state_;
 }
 
 std::string SceneObject::described() const {
-  const auto counted = [](auto count, const char* one, const char* many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-  };
   const Scene& scene = setup_.scene;
   Eigen::Index corners = 0;
   for (const Obstacle& obstacle : scene.obstacles) corners += obstacle.surface.vertex_count;
+  const auto vertices = [](Eigen::Index n) { return counted(n, "vertex", "vertices"); };
   return fmt::format("<selvedge.Scene: {} of {}, {}; {} of {}; frame {}, {:g} s>",
-                     counted(scene.cloths.size(), "cloth", "cloths"),
-                     counted(scene.surface.vertex_count, "vertex", "vertices"),
-                     counted(scene.surface.triangles.rows(), "triangle", "triangles"),
-                     counted(scene.obstacles.size(), "obstacle", "obstacles"), counted(corners, "vertex", "vertices"),
-                     state_.frame, state_.time);
+                     counted(std::ssize(scene.cloths), "cloth"), vertices(scene.surface.vertex_count),
+                     counted(scene.surface.triangles.rows(), "triangle"),
+                     counted(std::ssize(scene.obstacles), "obstacle"), vertices(corners), state_.frame, state_.time);
 }
 
 int SceneObject::traverse(PyObject* self, visitproc visit, void* arg) {
@@ -177,7 +188,18 @@ int SceneObject::clear(PyObject* self) {
   return 0;
 }
 
+void SceneObject::must_rest() const {
+  if (turn_) throw Error("is being stepped", "scene", "let one thread at a time work on a scene");
+}
+
+void SceneObject::ensure_begun() {
+  if (stepper_) return;
+  const SceneTurn turn(turn_);
+  begin();
+}
+
 void SceneObject::must_be_open() const {
+  must_rest();
   if (stepper_) throw Error("has been stepped", "scene", "add cloths and obstacles before the first step");
 }
 

@@ -2,6 +2,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "physics/frame/frame_audits.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/host/folder_lock.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
 #include "pipeline/scene/cloth_part.hpp"
@@ -18,8 +20,21 @@
 
 namespace selvedge {
 
+// One thread at a time works on a scene: from the begin of a frame until the scene has taken it over.
+class SceneTurn {
+ public:
+  explicit SceneTurn(std::atomic<bool>& taken);  // throws Error where another has it
+  ~SceneTurn() { taken_ = false; }
+  SceneTurn(const SceneTurn&) = delete;
+  SceneTurn& operator=(const SceneTurn&) = delete;
+
+ private:
+  std::atomic<bool>& taken_;
+};
+
 // A frame after the present one, before the scene takes it over.
 struct SteppedFrame {
+  std::unique_ptr<SceneTurn> turn;
   StepReport report;
   State state;  // not to be used if the step was rejected
   Drive drive;
@@ -57,8 +72,9 @@ class SceneObject {
   // Both, with Ctrl-C.
   bool step();
 
-  // Every frame from the present one on goes into a trajectory file, until the recording ends.
-  void record(const std::filesystem::path& file);
+  // Every frame from the present one on goes into run.h5 of the folder, until the recording ends. The folder is locked
+  // meanwhile, and results of an earlier run in it are removed.
+  void record(const std::filesystem::path& folder);
   void end_recording();
 
   void save(const std::filesystem::path& file);
@@ -80,11 +96,14 @@ class SceneObject {
 
  private:
   struct Recording {
+    std::unique_ptr<FolderLock> lock;
     TrajectoryWriter writer;
     EnergyTerms terms;
   };
   void must_be_open() const;
-  void begin();
+  void must_rest() const;  // throws Error while a thread works on it
+  void begin();            // for who has the turn
+  void ensure_begun();     // for who has it not
   Drive drive_of_arrays(double time) const;
   void add_part(ClothPart part);
   void take_over(State next);
@@ -106,6 +125,7 @@ class SceneObject {
   std::optional<StepReport> report_;  // of the last step
   int pairs_ = -1;
   std::unique_ptr<Recording> recording_;
+  std::atomic<bool> turn_ = false;  // taken
 };
 
 }  // namespace selvedge

@@ -37,8 +37,8 @@ const Options<LearnedRun>& learned_options() {
   static const Options<O> table(
       "learned", "A network makes the frames, at 30 a second. Penetrations are not removed; they are reported.",
       {path("weights", &O::weights,
-            "Weights of the network, a file that `selvedge train` or `selvedge weights import` writes. The path is "
-            "relative to the scene file."),
+            "Weights of the network, a file that `selvedge train` or `selvedge weights import` writes. Of the stepper "
+            "`carried_fitted`: its coefficients, by `selvedge teach`. The path is relative to the scene file."),
        flag("settle", &O::settle,
             "True: the first frame begins with a pass of the network in which the cloth falls to rest, as in "
             "ContourCraft's training. HOOD always has this pass."),
@@ -83,7 +83,8 @@ const Options<GuardOptions>& guard_options() {
        number("still", &O::still, Unit::length, positive,
               "Lower bound of the RMS displacement that `change_of_motion` divides by. Slower cloth counts as still."),
        number("slight", &O::slight, Unit::acceleration, not_negative,
-              "Residual acceleration of patches that `unexplained` always admits.")});
+              "Residual acceleration of patches that `unexplained` always admits, and the largest of cloth that flies "
+              "free.")});
   return table;
 }
 
@@ -93,21 +94,19 @@ const Options<HybridOptions>& hybrid_options() {
       "hybrid",
       "The network of `learned` proposes a step, and a guard judges it. Where the guard refuses, the conventional "
       "stepper takes the step from the same state.",
-      {choice(
-           "mode", &O::mode,
-           {{"fallback", HybridMode::fallback},
-            {"corrected", HybridMode::corrected},
-            {"refined", HybridMode::refined},
-            {"gated", HybridMode::gated},
-            {"after_k", HybridMode::after_k},
-            {"response", HybridMode::response},
-            {"rough", HybridMode::rough}},
-           "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `refined`: as "
-           "the first guess of a conventional solve. `gated`: as `corrected`, after a line search on the step's "
-           "potential. `after_k`: as `gated`, with a line search that starts after k Newton iterations. `response`: "
-           "after "
-           "the contact response, judged by its motion, the audits and the energy alone. `rough`: as the first guess "
-           "of one rough solve, judged in the same way."),
+      {choice("mode", &O::mode,
+              {{"fallback", HybridMode::fallback},
+               {"corrected", HybridMode::corrected},
+               {"refined", HybridMode::refined},
+               {"gated", HybridMode::gated},
+               {"after_k", HybridMode::after_k},
+               {"response", HybridMode::response},
+               {"rough", HybridMode::rough}},
+              "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `refined`: as "
+              "the first guess of a conventional solve. `gated`: as `corrected`, after a line search on the step's "
+              "potential. `after_k`: as `gated`, with a line search that starts after k Newton iterations. "
+              "`response`: after the contact response, judged by its motion, the audits and the energy alone. "
+              "`rough`: as the first guess of one rough solve, judged in the same way."),
        or_word(integer("newton", &O::newton, at_least_one,
                        "Number k of Newton iterations of `after_k`, or the largest number in a solve of `refined`. "
                        "`auto`: 2 for `after_k`, `max_newton` for `refined`."),
@@ -167,7 +166,7 @@ const Options<RecoveryOptions>& recovery_options() {
                "Largest number of untangling passes in a step. The next step goes on where they end."),
        number("speed", &O::speed, Unit::speed, positive, "Largest speed at which untangling moves a vertex."),
        number("farthest_place", &O::farthest_place, Unit::length, not_negative,
-              "Largest distance that a vertex moves when a garment is put on again."),
+              "Largest distance that a vertex moves when a garment is put back on its body."),
        number("push_softness", &O::push_softness, Unit::none, positive,
               "Distance over which the force sets in that keeps untangled cloth apart, in contact thicknesses.")},
       {}, {},
@@ -220,7 +219,7 @@ const Options<RunOptions>& run_options() {
           OptionRows<O>{word("stepper", &O::stepper, known_kinds().names(), "Method that makes the frames."),
                         flag("rest", &O::rest, "True: a resting cloth is not simulated while nothing near it moves."),
                         section(&O::resting, resting_options(), "When a cloth counts as resting."),
-                        section(&O::recovery, recovery_options(), "What a step does that starts tangled."),
+                        section(&O::recovery, recovery_options(), "How a tangled start is untangled."),
                         section(&O::icm, icm_options(), "Options of the stepper `icm`."),
                         section(&O::learned, learned_options(), "Options of the stepper `learned`."),
                         section(&O::hybrid, hybrid_options(), "Options of the stepper `hybrid`."),

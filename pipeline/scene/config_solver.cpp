@@ -53,7 +53,7 @@ const Options<SubstepOptions>& substep_options() {
               "Factor on the tolerance from the third solve of a substep on, and of all solves with friction where "
               "touching cloth does not move. Cloth sticks only if it is small."),
        integer("max_passes", &O::max_passes, not_negative,
-               "Largest number of solves of a substep after the first one. With 0 the response meets all impacts."),
+               "Largest number of solves of a substep after the first one. With 0 the response resolves all impacts."),
        number("normal_change", &O::normal_change, Unit::none, positive,
               "Relative change of the lagged normal forces above which a substep is solved again."),
        section(&O::contact, contact_term_options(), "Contact terms of the incremental potential.")},
@@ -134,7 +134,7 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
       number("slip_speed", &O::slip_speed, Unit::speed, positive, "Sliding speed below which friction is viscous."),
       integer("max_newton_step", &O::max_newton_step, at_least_one,
               "Largest number of Newton iterations in a whole step, over all its solves. Beyond it each solve takes "
-              "one, and the report says `out_of_newton`: contact holds, but the cloth is not where it should be."),
+              "one, and the report says `out_of_newton`: contact holds, but the solves are rough."),
       section(&O::newton, newton_options(), "When Newton's method goes beyond its usual step.")};
   return rows;
 }
@@ -150,8 +150,8 @@ const Options<ConventionalOptions>& solver_options() {
                            "Time integrator. `bdf2` is second-order accurate with less damping where nothing touches, "
                            "and implicit Euler elsewhere; the stepper `icm` lacks it."),
                     choice("guess", &O::guess, {{"inertia", FirstGuess::inertia}, {"carried", FirstGuess::carried}},
-                           "Where the first solve of a step begins: as the cloth moves, or (`carried`) where it goes "
-                           "with its body, if the potential is lower there.")} +
+                           "Where the first solve of a step begins. `inertia`: where velocities take the cloth. "
+                           "`carried`: where it moves with its body, if the potential is lower there.")} +
           inside(&O::implicit_euler, implicit_euler_options()) +
           OptionRows<O>{section(&O::substep, substep_options(), "Substeps and the contact solve."),
                         section(&O::resolve, response_options(), "Contact response: impulses and impact zones.")});

@@ -9,6 +9,7 @@
 #include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
+#include "pipeline/formats/carried_model_hdf5.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 
@@ -30,6 +31,30 @@ StepperKind carried_kind() {
   StepperKind kind{.name = "carried", .plan = carried_lines};
   kind.maker = [](const Setup&, const Config&) -> MakeStepper {
     return [](const Scene& scene) { return make_carried_stepper(scene); };
+  };
+  return kind;
+}
+
+TaughtCarried taught_carried(const Setup& setup) {
+  const std::filesystem::path file = weights_of(setup, "`selvedge teach` makes such a file");
+  TaughtCarried taught = read_taught_carried(file);
+  check_fits(taught, setup.scene.surface, file);
+  return taught;
+}
+
+std::vector<PlanLine> carried_fitted_lines(const Setup& setup) {
+  const TaughtCarried taught = taught_carried(setup);
+  std::string sets = taught.model.own.rows() > 0 ? "each vertex has its own" : "one set for all vertices";
+  return {{"carried guess", true, "coefficients fitted on " + joined(taught.clips) + "; " + sets},
+          {"solve", false, "left out by the stepper carried_fitted, with every elastic force"}};
+}
+
+StepperKind carried_fitted_kind() {
+  StepperKind kind{.name = carried_fitted_name, .plan = carried_fitted_lines};
+  kind.maker = [](const Setup& setup, const Config&) -> MakeStepper {
+    return [model = taught_carried(setup).model](const Scene& scene) {
+      return make_carried_stepper(scene, model, carried_fitted_name);
+    };
   };
   return kind;
 }
@@ -162,8 +187,8 @@ StepperKind hybrid_kind() {
 
 Kinds known_kinds() {
   Kinds kinds;
-  for (StepperKind& kind : std::vector{conventional_kind(), carried_kind(), carried_rough_kind(), icm_kind(),
-                                       learned_kind(), hybrid_kind()})
+  for (StepperKind& kind : std::vector{conventional_kind(), carried_kind(), carried_fitted_kind(), carried_rough_kind(),
+                                       icm_kind(), learned_kind(), hybrid_kind()})
     kinds.add(std::move(kind));
   return kinds;
 }

@@ -13,13 +13,21 @@
 
 namespace selvedge {
 
-const WeightFile& network_of(const Setup& setup) {
+std::filesystem::path weights_of(const Setup& setup, const std::string& cure) {
   const std::string& weights = setup.run.learned.weights;
   if (weights.empty())
     throw Error("the stepper `" + setup.kind.name + "` needs a weight file",
-                setup.file.string() + ": run.learned.weights",
-                "give this key or --weights; `selvedge weights import` makes such a file of a published checkpoint");
-  const std::filesystem::path file = setup.file.parent_path() / weights;  // an absolute path stays as it is
+                setup.file.string() + ": run.learned.weights", "give this key or --weights; " + cure);
+  return setup.file.parent_path() / weights;  // an absolute path stays as it is
+}
+
+bool reads_weights(const Setup& setup) {
+  return setup.kind.network != NetworkUse::none || setup.kind.name == carried_fitted_name;
+}
+
+const WeightFile& network_of(const Setup& setup) {
+  const std::filesystem::path file =
+      weights_of(setup, "`selvedge weights import` makes such a file of a published checkpoint");
   const auto known = setup.networks->find(file);
   return known != setup.networks->end() ? known->second
                                         : setup.networks->emplace(file, read_weight_file(file)).first->second;

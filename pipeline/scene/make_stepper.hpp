@@ -8,6 +8,15 @@
 
 namespace selvedge {
 
+// The file that the scene names by run.learned.weights. Throws Error where it names none; `cure`: what makes one.
+std::filesystem::path weights_of(const Setup&, const std::string& cure);
+
+// The stepper whose coefficients `selvedge teach` fits. It runs no network, and reads its file by run.learned.weights.
+inline constexpr const char* carried_fitted_name = "carried_fitted";
+
+// Whether the setup's kind of stepper reads run.learned.weights.
+bool reads_weights(const Setup&);
+
 // The network of a setup whose kind of stepper runs one, read once. Throws Error where the scene names none, and
 // whatever read_weight_file does.
 const WeightFile& network_of(const Setup&);

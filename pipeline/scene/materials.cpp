@@ -51,18 +51,6 @@ void apply(const Config& section, Material& material) {
   apply_elastic(section, material);
 }
 
-std::vector<std::string> material_names(const fs::path& folder) {
-  std::vector<std::string> names{Material{}.name};
-  for (const fs::path& place : config_folders(folder)) {
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(place / "materials", ignored))
-      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
 void read_named(const Config& name, const fs::path& folder, Material& material) {
   material.name = name.text();
   for (const fs::path& place : config_folders(folder)) {
@@ -84,6 +72,18 @@ void write_back(const Material& material, Config& section) {
 }
 
 }  // namespace
+
+std::vector<std::string> material_names(const fs::path& folder) {
+  std::vector<std::string> names{Material{}.name};
+  for (const fs::path& place : config_folders(folder)) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(place / "materials", ignored))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
 
 Material read_material(Config& section, const fs::path& folder) {
   const Config &name = section["name"], &file = section["file"];

@@ -126,6 +126,8 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   if (section["mesh"].given) warn_of_coincident(part, warnings);
   if (worn && section["garment"]["file"].given) warn_of_seams(section["garment"], part, warnings);
   leave_out_massless(part, warnings);
+  if (part.mesh.triangles.rows() == 0)
+    section.fail("has no triangle with an area in its rest shape", "repair the mesh, or give another `rest`");
   if (worn && section["start"]["moving"].flag())
     part.velocity = skinned_velocity(*part.worn, 0);
   else

@@ -47,10 +47,10 @@ void warn_of_rounding(const Scene& scene, const Points& x, const std::vector<Poi
   int count = coarser_than(step, x);
   for (const Points& obstacle : obstacles) count += coarser_than(step, obstacle);
   if (count > 0)
-    warnings.push_back(
-        fmt::format("{} so far from the origin that stored positions are rounded by more than a tenth of "
-                    "contact.thickness; move the scene to the origin by `translate`",
-                    counted(count, "vertex is", "vertices are")));
+    warnings.push_back(fmt::format(
+        "{} so far from the origin that stored positions are rounded by more than a tenth of "
+        "contact.thickness; move the scene to the origin by `translate`, or give a larger contact.thickness",
+        counted(count, "vertex is", "vertices are")));
 }
 
 void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene, const Points& x,

@@ -74,8 +74,7 @@ int frames_of(const RunSummary& summary, Verdict verdict) {
   return k < frames.size() ? frames[k] : 0;
 }
 
-// Nothing but numbers that are none is held against a bare network: a step that it rejects has a reason, and what else
-// there is to say of it is told.
+// A bare network fails only for numbers that are not finite in an accepted state. Its row shows all other findings.
 void judge_row(const RunSummary& summary, const StabilityLimits& limits, NetworkUse network, StabilityRow& row) {
   std::vector<std::string>& told = network == NetworkUse::alone ? row.told : row.failures;
   const auto fail_if = [&](bool bad, std::string why) {
@@ -212,13 +211,8 @@ CellList stability_cells(const StabilityRequest& request) {
     return run_cell(*work, k, folder, watch);
   };
   list.gather = [](const std::vector<CellRecord>& records, const std::filesystem::path& out) {
-    std::vector<StabilityRow> rows;
-    for (const CellRecord& record : records)
-      if (const std::optional<StabilityRow> row = read_stability_row(record.result.row)) {
-        rows.push_back(*row);
-        show_run(out, record.cell);
-      }
-    return write_tables(out, rows);
+    const auto show = [&](const StabilityRow&, const std::string& cell) { show_run(out, cell); };
+    return write_tables(out, cell_rows(records, read_stability_row, show));
   };
   return list;
 }

@@ -19,7 +19,7 @@ struct StabilityMeasures {
   long jumped = 0;         // obstacles that jumped
 };
 
-// One run of the suite, and what came of it.
+// The result of one run of the suite.
 struct StabilityRow : StabilityMeasures {
   std::string name, run;  // of the case and of the run in it
   std::string stepper;

@@ -30,7 +30,8 @@ const Section& run_section() {
   static const Section table{
       "run",
       "",
-      {needed(text("name", "What differs, for readers.")), texts("set", "`key=value` overrides of the scene."),
+      {needed(text("name", "How the run differs from others, for readers.")),
+       texts("set", "`key=value` overrides of the scene."),
        flag("short", false, "True: the run is in the short form too."),
        word("fault", weight_faults(), "",
             "What is wrong with the weights, for steppers with a network. `huge`: the network returns 1e6.")},

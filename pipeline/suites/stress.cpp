@@ -163,17 +163,12 @@ CellTables write_tables(const std::filesystem::path& out, const std::vector<Stre
 }
 
 void show_run(const std::filesystem::path& out, const StressRow& row, const std::string& cell) {
-  show_result(cell_folder(out, cell) / "run", out / row.scene / fmt::format("repeat_{}", row.repeat));
+  show_result(cell_folder(out, cell) / "run", out / cell_name(row.scene) / fmt::format("repeat_{}", row.repeat));
 }
 
 CellTables gather_stress(const std::vector<CellRecord>& records, const std::filesystem::path& out) {
-  std::vector<StressRow> rows;
-  for (const CellRecord& record : records)
-    if (const std::optional<StressRow> row = read_stress_row(record.result.row)) {
-      rows.push_back(*row);
-      show_run(out, *row, record.cell);
-    }
-  return write_tables(out, rows);
+  const auto show = [&](const StressRow& row, const std::string& cell) { show_run(out, row, cell); };
+  return write_tables(out, cell_rows(records, read_stress_row, show));
 }
 
 std::string log_line(const StressRow& row, int repeats) {

@@ -24,7 +24,7 @@ struct StressRequest {
   std::function<bool()> stop;   // asked after every frame; true ends the suite, unfinished repeats are not kept
 };
 
-// One repeat of a scene, and what came of it.
+// The result of one repeat of a scene.
 struct StressRow {
   std::string scene;
   int repeat = 0;

@@ -146,6 +146,8 @@ WardrobeWork read_work(const WardrobeRequest& request) {
     for (const Wear& wear : wears) work.cells.push_back({wear, clip, clip.name == all_clips.front().name});
   work.files = {outfits, clips, request.configs / "wardrobe" / "garment.yaml",
                 request.configs / "wardrobe" / "outfit.yaml"};
+  for (const std::filesystem::path& file : config_files_near(request.configs / "wardrobe"))
+    if (!std::filesystem::equivalent(file, outfits)) work.files.push_back(file);
   std::string settings;
   for (const std::filesystem::path& file : work.files) settings += whole_file(file);
   work.key = fmt::format("{:016x} {}", hash_of(settings), request.most_frames);
@@ -227,12 +229,8 @@ void show_run(const std::filesystem::path& out, const WardrobeRow& row, const st
 
 CellTables gather_rows(const WardrobeWork& work, const std::vector<CellRecord>& records,
                        const std::filesystem::path& out) {
-  std::vector<WardrobeRow> rows;
-  for (const CellRecord& record : records)
-    if (const std::optional<WardrobeRow> row = read_wardrobe_row(record.result.row)) {
-      rows.push_back(*row);
-      show_run(out, *row, record.cell);
-    }
+  const auto show = [&](const WardrobeRow& row, const std::string& cell) { show_run(out, row, cell); };
+  std::vector<WardrobeRow> rows = cell_rows(records, read_wardrobe_row, show);
   return write_tables(work, out, rows);
 }
 

@@ -6,12 +6,12 @@
 #include "pipeline/cells/shot_cells.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/config/config_tables.hpp"
+#include "pipeline/config/config_text.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/suites/stability.hpp"
 #include "pipeline/suites/stress.hpp"
 #include "pipeline/suites/wardrobe.hpp"
-#include "pipeline/suites/work_keys.hpp"
 
 namespace selvedge {
 namespace {
@@ -46,21 +46,21 @@ const Section& wardrobe_section() {
                              "",
                              {kind_key(), description_key(), texts("wear", "Garments and outfits. Default: all."),
                               texts("clips", "Procedural clips. Default: all."),
-                              integer("frames", not_negative, "0", "Most frames of a clip. 0: all."),
+                              integer("frames", not_negative, "0", "Largest number of frames of a clip. 0: all."),
                               path("configs", "Folder of the configurations. Default: the program's.")}};
   return table;
 }
 
 const Section& stress_section() {
-  static const Section table{
-      "stress",
-      "",
-      {kind_key(), description_key(), texts("scenes", "Names of scenes. Default: all."),
-       integer("repeats", at_least_one, "10", "Runs of each scene."),
-       integer("seed", not_negative, "1", "Of the first repeat's jitter."),
-       number("jitter", Unit::none, not_negative, "0.01", "Jitter of the starts, in mean edge lengths."),
-       flag("short", false, "True: the scenes' short forms."),
-       path("configs", "Folder of the scenes. Default: the program's.")}};
+  static const Section table{"stress",
+                             "",
+                             {kind_key(), description_key(), texts("scenes", "Names of scenes. Default: all."),
+                              integer("repeats", at_least_one, "10", "Number of runs of each scene."),
+                              integer("seed", not_negative, "1", "Seed of the jitter in the first repeat."),
+                              number("jitter", Unit::none, not_negative, "0.01",
+                                     "Largest random displacement of start positions, in mean edge lengths."),
+                              flag("short", false, "True: the short forms of the scenes are run."),
+                              path("configs", "Folder of the scenes. Default: the program's.")}};
   return table;
 }
 
@@ -69,7 +69,7 @@ const Section& compare_section() {
       "compare",
       "",
       {kind_key(), description_key(), needed(path("file", "Comparison file, relative to this file's folder.")),
-       flag("short", false, "True: the short form of the comparison and its scenes."),
+       flag("short", false, "True: the short forms of the comparison and of its scenes are run."),
        texts("set", "`key=value` overrides of the comparison.")}};
   return table;
 }
@@ -79,9 +79,9 @@ const Section& stability_section() {
       "stability",
       "",
       {kind_key(), description_key(), needed(path("suite", "Suite file, relative to this file's folder.")),
-       texts("cases", "Names of cases. Default: all."), text("stepper", "In place of the scenes' own."),
+       texts("cases", "Names of cases. Default: all."), text("stepper", "Stepper, in place of the scenes' own."),
        path("weights", "Weight file of its network, relative to this file's folder."),
-       flag("short", false, "True: the runs that the suite marks as short.")}};
+       flag("short", false, "True: only the runs that the suite marks as short are done.")}};
   return table;
 }
 
@@ -177,24 +177,25 @@ CellList read_work_file(const std::filesystem::path& file, const std::string& ki
 }
 
 CellList read_by_keys(const std::filesystem::path& file) {
-  const WorkKeys keys = work_keys(file);
-  if (keys.has("cells")) return read_work_file(file, keys.cells);
-  if (keys.has("settings")) {
+  const auto keys = top_keys(file, "work");
+  const auto has = [&](const char* name) { return keys.contains(name); };
+  if (has("cells")) return read_work_file(file, keys.at("cells"));
+  if (has("settings")) {
     CompareRequest request;
     request.file = file;
     return compare_cells(request);
   }
-  if (keys.has("cases")) {
+  if (has("cases")) {
     StabilityRequest request;
     request.suite = file;
     return stability_cells(request);
   }
-  if (keys.has("poses") || keys.has("garment")) {
+  if (has("poses") || has("garment")) {
     DatasetRequest request;
     request.config = file;
     return dataset_cells(request);
   }
-  const bool scene = keys.has("cloths");
+  const bool scene = has("cloths");
   throw Error(scene ? "is a scene, which is one run" : "is no list of cells", file.string(),
               scene ? "name it in a work file that begins with `cells: shots`, or `selvedge simulate` it"
                     : "give a work file (`cells: shots`), a comparison (`settings`), a stability suite (`cases`) or a "

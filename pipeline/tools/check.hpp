@@ -18,7 +18,7 @@ struct CheckRequest {
   std::optional<std::filesystem::path> rest;  // mesh of the same triangles at rest; a trajectory has its own
   std::vector<std::filesystem::path> bodies;  // meshes that the cloth must not touch, beside a trajectory's obstacles
   std::optional<std::filesystem::path> against{};  // another trajectory, or run, of the same cloths
-  std::string audit = "own";                       // own or fcl; fcl adds FCL's opinion to the audit's
+  std::string audit = "own";                       // own or fcl; fcl adds FCL's result to the audit's
   double horizon = 0.02;                           // larger gaps are not measured [m]
   bool volume = false;                             // measures the volume that crossings enclose
 };

@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// A pair of triangles that intersects in one opinion only. In pairs with a body, `second` counts through the triangles
-// of all bodies.
+// A pair of triangles that only one of the two finds to intersect. In pairs with a body, `second` counts through the
+// triangles of all bodies.
 struct Disagreement {
   int frame = 0;
   int first = 0, second = 0;
@@ -19,7 +19,7 @@ struct Disagreement {
   bool beyond = false;  // margin above 1e-9 of the size, where floating point must not err
 };
 
-// FCL's opinion of the frames of a check.
+// FCL's results for the frames of a check.
 struct Opinion {
   std::vector<int> pairs_by_frame;  // with itself and with bodies
   int frames_against_body = 0;      // frames in which FCL finds a pair with a body
@@ -27,7 +27,7 @@ struct Opinion {
   int beyond_rounding = 0;  // number of disagreements with `beyond`
 };
 
-// Adds FCL's opinion of one frame to that of the audit. Frames must be finite. Throws Error if the build has no FCL.
+// Adds FCL's result for one frame. Frames must be finite. Throws Error if the build has no FCL.
 void add_opinion(const Surface& cloth, const Points& x, std::span<const AuditBody> bodies, const Audit& ours, int frame,
                  Opinion&);
 

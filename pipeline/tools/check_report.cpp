@@ -85,7 +85,7 @@ std::string check_text(const CheckReport& r) {
   if (r.max_stretch) add("stretch", fmt::format("{:.4f} to {:.4f}", *r.min_stretch, *r.max_stretch));
   add("not finite", counted(r.nonfinite, "vertex", "vertices"));
   add("degenerate triangles", fmt::format("{}", r.degenerate_triangles));
-  if (r.fcl) add("FCL's opinion", opinion_text(*r.fcl));
+  if (r.fcl) add("FCL's result", opinion_text(*r.fcl));
   if (r.volume) add("enclosed volume", volume_text(*r.volume));
   for (const auto& [name, value] : r.measures) add(name, fmt::format("{:<12.6g} {}", value, meaning_of(name)));
   for (const std::string& warning : r.warnings) add("warning", warning);

@@ -15,7 +15,9 @@
 #include "pipeline/config/config.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
+#include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/kinds.hpp"
+#include "pipeline/scene/materials.hpp"
 
 namespace selvedge {
 namespace {
@@ -54,7 +56,8 @@ std::vector<std::pair<std::string, std::string>> facts() {
           {"openmp", has_openmp() ? "in" : "left out (SELVEDGE_OPENMP=OFF)"},
           {"threads", std::to_string(most_threads())},
           {"waiting", waiting()},
-          {"steppers", joined(known_kinds().names())}};
+          {"steppers", joined(known_kinds().names())},
+          {"materials", joined(material_names(config_folder()))}};
 }
 
 }  // namespace

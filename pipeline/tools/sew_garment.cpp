@@ -184,8 +184,8 @@ std::vector<std::string> faults_of(const PatternReport& report) {
   if (sewn.rejected) all.emplace_back("a step found no finite end");
   if (report.open_stitches > 0)
     all.push_back(
-        fmt::format("{} of {} stitches never closed, {:.3g} mm apart at most: joined, they pull the garment "
-                    "where it was not led; are the edges too long, or has the body another shape?",
+        fmt::format("{} of {} stitches never closed, {:.3g} mm apart at most; joining them distorts the garment; "
+                    "are the edges too long, or has the body another shape?",
                     report.open_stitches, report.stitches, 1e3 * report.largest_gap));
   if (sewn.watch.part.places.empty())
     all.emplace_back("the garment is not on the body where its stitches have closed: it is sewn round nothing");

@@ -16,6 +16,7 @@ enum class TeacherQuality { converged, standard };
 // How the solver teaches. Members are described where keys are bound to them: pipeline/training/training_options.cpp.
 struct TeacherOptions {
   TeacherQuality quality = TeacherQuality::converged;
+  int uses = 1, kept = 256;
 };
 
 // What the objective needs of the solver.

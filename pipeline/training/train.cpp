@@ -40,6 +40,7 @@ struct TrainingRun {
   Clock::time_point started = Clock::now(), saved = Clock::now(), told = Clock::now(), looked = Clock::now();
   double seconds_before = 0;  // of earlier parts of the run
   long steps_before = 0;
+  double waited_before = 0;  // for the teacher, as measurements were prepared [s]
   double told_every = 2;
 
   // Whether this process writes files, measures and says how the run goes on.
@@ -96,7 +97,8 @@ std::string measure_text(const TrainingMeasure& m) {
   const RollMeasure& r = m.roll;
   if (!r.finite) return fmt::format("step {}: the measuring roll-out is not finite after {} frames", m.step, r.frames);
   return fmt::format(
-      "step {}: gap closed {:.3f} worn, {:.3f} minimised; roll-out of {} frames: objective {:.4g} J, strain {:.2f} % "
+      "step {}: gap closed {:.3f} (skinned), {:.3f} (minimised); roll-out of {} frames: objective {:.4g} J, strain "
+      "{:.2f} % "
       "(99 %: {:.1f} %), {:.2f} % of the vertices deep in the body, {:.0f} pairs at the end",
       m.step, m.skinned.closed, m.minimised.closed, r.frames, r.energy, 100 * r.strain, 100 * r.strain_99, 100 * r.deep,
       static_cast<double>(r.pairs_at_end));
@@ -142,8 +144,14 @@ void take_measure(TrainingRun& run) {
 std::string teacher_text(const TrainingRun& run) {
   if (!run.trainer->teacher) return "";
   const TeacherTally tally = run.trainer->teacher->tally();
-  return fmt::format(", {:.3g} targets/s by the solver, waited for it in {:.0f} % of the time", tally.rate(),
-                     100 * tally.waited / std::max(seconds_since(run.started), 1e-9));
+  const TrainingCounts& counts = run.trainer->counts;
+  std::string text =
+      fmt::format(", {:.3g} targets/s by the solver, waited for it in {:.0f} % of the time", tally.rate(),
+                  100 * (tally.waited - run.waited_before) / std::max(seconds_since(run.started), 1e-9));
+  if (run.options.teacher.uses > 1)
+    text += fmt::format(", {:.3g} samples a target",
+                        1 + static_cast<double>(counts.again) / static_cast<double>(std::max(counts.frames, 1L)));
+  return text;
 }
 
 void tell(TrainingRun& run, bool now = false) {
@@ -267,6 +275,7 @@ void begin(TrainingRun& run) {
     run.say(who);
   }
   run.watch = make_training_watch(run.options, *run.trainer);
+  if (run.trainer->teacher) run.waited_before = run.trainer->teacher->tally().waited;
   run.started = run.saved = run.told = Clock::now();
 }
 

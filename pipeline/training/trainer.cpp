@@ -172,6 +172,12 @@ Architecture trained_architecture(const TrainingOptions& options) {
   if (architecture.passes > 1 && features.base == OutputBase::carried && !features.pass_inputs)
     throw Error("the network `" + architecture.name + "` makes a frame in one pass", options.name + ": pool.passes",
                 "give passes: 1");
+  const bool sees_what_changes =
+      features.force_inputs || features.type_columns + features.level_columns + features.label_columns > 0;
+  if (options.teacher.uses > 1 && (architecture.passes > 1 || sees_what_changes))
+    throw Error("kept states suit networks of one pass that see no embeddings and no force of the objective",
+                options.name + ": teacher.uses",
+                "take the architecture student and `pool.passes: 1`, or leave `teacher.uses` out");
   features.attraction_edges = options.contact.attraction;
   if (features.cloth_edges && !options.contact.classify) features.contours = ContourRule::all_repel;
   check_architecture(architecture, options.name);
@@ -198,6 +204,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options, Proc
   trainer->queue = std::make_unique<RollQueue>(*trainer->maker);
   if (const TeacherWork work = teacher_work(options.objective); work.any())
     trainer->teacher = std::make_unique<Teacher>(options.teacher, work);
+  trainer->taught.most = static_cast<std::size_t>(options.teacher.kept);
   return trainer;
 }
 

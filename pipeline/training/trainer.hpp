@@ -11,6 +11,7 @@
 #include "pipeline/processes/processes.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"
+#include "pipeline/training/taught_states.hpp"
 #include "pipeline/training/teacher.hpp"
 #include "pipeline/training/trained_on.hpp"
 
@@ -24,6 +25,7 @@ struct TrainingCounts {
   long lost = 0;                   // roll-outs that went too far from the skinned garment
   long given_up = 0;               // roll-outs in which Bridson's response gave up
   long bad = 0, bad_in_a_row = 0;  // samples without a finite loss or gradient
+  long again = 0;                  // samples from states that were learned from before
 };
 
 // What one sample gave in a step.
@@ -34,10 +36,12 @@ struct SampleRecord {
   std::string bad;  // reason why the sample was dropped; empty: none
 };
 
-// A state of the pool in a step.
+// A state in a step.
 struct Sample {
-  RollingState* state = nullptr;
+  RollingState* state = nullptr;  // of the pool, or that of `again`
+  TaughtState* again = nullptr;   // not null: its network and losses are as they were, and it does not go on
   Graph graph;
+  std::unique_ptr<TaughtState> kept;  // of a state of the pool, where it is learned from again later
   NextCloth next;        // the network's result
   FeatureRows d_output;  // derivative of the objective by the network's output
   SampleRecord record;
@@ -58,6 +62,7 @@ struct Trainer {
   std::unique_ptr<RollMaker> maker;
   std::unique_ptr<RollQueue> queue;
   std::unique_ptr<Teacher> teacher;  // null: no term of the objective needs one
+  TaughtStates taught;
   RunInputs inputs;                  // files of people, and a hash of the training world
   TrainedOn trained_on;              // includes the runs whose weights it began with
   std::vector<int> start_pairs;      // of the roll-outs begun by this process, where they are counted

@@ -15,7 +15,7 @@
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/processes/together.hpp"
 #include "pipeline/run/resume.hpp"
-#include "pipeline/run/summed_fields_hdf5.hpp"
+#include "pipeline/training/own_states_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -24,49 +24,7 @@ const h5::FileForm checkpoint_form{"selvedge training checkpoint 2", "training c
 const h5::FileForm part_form{"selvedge training checkpoint part 1", "part of a checkpoint", "docs/training.md"};
 
 using FieldsOut = h5::SummedFieldsOut;
-
-// A file of ours that is read field by field.
-struct FieldsIn : h5::SummedFieldsIn {
-  explicit FieldsIn(const h5::File& from) : SummedFieldsIn{{from}, "begin the training anew, without --resume"} {}
-};
-
-// The numbers of a roll-out in the order of the file.
-template <class Request, class Visit>
-void visit_request(Request& r, const Visit& visit) {
-  const auto visit_all = [&visit](auto&... fields) { (visit(fields), ...); };
-  visit_all(r.number, r.wear, r.body, r.clip, r.first_frame, r.frames, r.still, r.mirrored, r.with_body,
-            r.cloth_contact, r.yaw, r.sheet, r.wind, r.force[0], r.force[1], r.force[2], r.simulated, r.noise);
-}
-
-std::vector<double> numbers_of(const RollRequest& request) {
-  std::vector<double> numbers;
-  visit_request(request, [&numbers](const auto& field) { numbers.push_back(static_cast<double>(field)); });
-  return numbers;
-}
-
-constexpr std::size_t request_numbers = 18;
-
-RollRequest request_of(const FieldsIn& in, const TrainingWorld& world, std::span<const double> n) {
-  if (!std::ranges::all_of(n.first(request_numbers), [](double v) { return std::isfinite(v); }))
-    in.fail("has a roll-out of numbers that are not finite");
-  RollRequest r;
-  std::size_t at = 0;
-  visit_request(r, [&]<class Field>(Field& field) {
-    const double number = n[at++];
-    if constexpr (std::is_same_v<Field, double>)
-      field = number;
-    else if constexpr (std::is_same_v<Field, bool>)
-      field = number != 0;
-    else
-      field = static_cast<Field>(in.whole("roll-out", number, sizeof(Field) > 4 ? 1e15 : 1e9));
-  });
-  const bool known = r.wear < int(world.wear.size()) && r.body < int(world.bodies.size()) &&
-                     world.wear[std::size_t(r.wear)].person == world.bodies[std::size_t(r.body)].person &&
-                     r.clip < int(world.bodies[std::size_t(r.body)].clips.size()) && r.frames >= 1 &&
-                     r.frames < 100000 && r.simulated < 100000 && r.sheet <= HungStart::folded;
-  if (!known) in.fail("names a roll-out that the configuration does not have");
-  return r;
-}
+using FieldsIn = TrainingFieldsIn;
 
 std::vector<float> all_weights(const Architecture& architecture, NetworkWeights weights) {
   std::vector<float> all;
@@ -120,67 +78,10 @@ AdamState read_adam(FieldsIn& in, const Architecture& architecture) {
   return adam_from_arrays(architecture, arrays, in.file.path().string());
 }
 
-void write_pool(FieldsOut& out, const Trainer& trainer) {
-  std::vector<double> waiting;
-  for (const RollRequest& request : trainer.queue->waiting()) {
-    const std::vector<double> numbers = numbers_of(request);
-    waiting.insert(waiting.end(), numbers.begin(), numbers.end());
-  }
-  out.numbers("waiting", waiting);
-  for (std::size_t k = 0; k < trainer.pool.size(); ++k) {
-    const RollingState& state = trainer.pool[k];
-    const std::string name = fmt::format("state_{}_", k);
-    std::vector<double> numbers = numbers_of(state.roll.request);
-    const KeptRolling kept_state = kept(state);
-    numbers.insert(numbers.end(), {double(state.over), double(kept_state.frame), double(kept_state.pass)});
-    out.numbers(name + "roll", numbers);
-    if (state.over) continue;
-    out.points(name + "x", kept_state.x);
-    out.points(name + "previous", kept_state.previous);
-    out.points(name + "velocity", kept_state.velocity);
-    out.points(name + "guess", kept_state.guess);
-  }
-}
-
-// Prepares the roll-outs again.
-void read_pool(FieldsIn& in, Trainer& trainer) {
-  const std::vector<double> waiting = in.numbers("waiting");
-  std::vector<KeptRolling> states(trainer.pool.size());
-  std::vector<std::size_t> going;
-  for (std::size_t k = 0; k < trainer.pool.size(); ++k) {
-    const std::string name = fmt::format("state_{}_", k);
-    const std::vector<double> numbers = in.numbers(name + "roll");
-    if (numbers.size() != request_numbers + 3) in.fail("the field `" + name + "roll` has another length");
-    if (numbers[request_numbers] != 0) continue;
-    going.push_back(k);
-    trainer.queue->ask(request_of(in, trainer.maker->world, numbers));
-    const auto integer = [&](std::size_t n) { return int(in.whole(name + "roll", numbers[request_numbers + n], 1e9)); };
-    states[k] = {integer(1),
-                 integer(2),
-                 in.points(name + "x"),
-                 in.points(name + "previous"),
-                 in.points(name + "velocity"),
-                 in.points(name + "guess")};
-  }
-  for (const std::size_t k : going) {
-    Roll roll = trainer.queue->take();
-    const Eigen::Index rows = roll.start.rows();
-    const KeptRolling& from = states[k];
-    if (from.x.rows() != rows || from.previous.rows() != rows || from.velocity.rows() != rows ||
-        (from.guess.rows() != rows && from.guess.rows() != 0) || from.frame >= roll.request.frames ||
-        from.pass >= trainer.architecture.passes)
-      in.fail("has a state that does not fit its garment");
-    resume_roll(std::move(roll), from, trainer.pool[k]);
-    set_guard(trainer.options, trainer.pool[k]);
-  }
-  for (std::size_t k = 0; k + request_numbers <= waiting.size(); k += request_numbers)
-    trainer.queue->ask(request_of(in, trainer.maker->world, std::span(waiting).subspan(k)));
-}
-
 void write_counts(FieldsOut& out, const Trainer& trainer) {
   const TrainingCounts& c = trainer.counts;
   out.numbers("counts", {double(c.step), double(c.rolls), double(c.frames), double(c.lost), double(c.given_up),
-                         double(c.bad), double(c.bad_in_a_row)});
+                         double(c.bad), double(c.bad_in_a_row), double(c.again)});
   out.text("random", fmt::format("{:016x}", trainer.random.state));
 }
 
@@ -192,9 +93,10 @@ void write_history(FieldsOut& out, const TrainingHistory& history) {
 
 void read_counts(FieldsIn& in, Trainer& trainer) {
   const std::vector<double> c = in.numbers("counts");
-  if (c.size() != 7) in.fail("the field `counts` has another length");
+  if (c.size() != 8) in.fail("the field `counts` has another length");
   const auto count = [&](std::size_t k) { return in.whole("counts", c[k], 1e15); };
-  trainer.counts = {count(0), static_cast<std::uint64_t>(count(1)), count(2), count(3), count(4), count(5), count(6)};
+  trainer.counts = {count(0), static_cast<std::uint64_t>(count(1)), count(2), count(3), count(4), count(5), count(6),
+                    count(7)};
   trainer.random.state = std::strtoull(in.text("random").c_str(), nullptr, 16);
 }
 
@@ -277,7 +179,7 @@ std::uint64_t write_part(const std::filesystem::path& checkpoint, const Trainer&
     FieldsOut out{{file}};
     out.numbers("rank", {double(rank)});
     write_counts(out, trainer);
-    write_pool(out, trainer);
+    write_own_states(out, trainer);
     out.write_checksum();
     sum = out.sum;
   });
@@ -296,7 +198,7 @@ void read_part(const std::filesystem::path& checkpoint, const Parts& parts, Trai
   FieldsIn in(file);
   if (in.numbers("rank") != std::vector<double>{double(rank)}) in.fail("is the part of another process");
   read_counts(in, trainer);
-  read_pool(in, trainer);
+  read_own_states(in, trainer);
   in.check_checksum();
   if (in.sum != parts[rank]) in.fail("is of another checkpoint than the one beside it");
 }
@@ -361,7 +263,7 @@ void write_checkpoint(const std::filesystem::path& path, const Trainer& trainer,
     visit_statistics(write_sums, trainer.sums);
     write_adam(out, trainer);
     if (parts.empty())
-      write_pool(out, trainer);
+      write_own_states(out, trainer);
     else
       out.text("parts", parts_text(parts));
     out.write_checksum();
@@ -408,13 +310,13 @@ std::unique_ptr<Trainer> read_training_checkpoint(const std::filesystem::path& p
   };
   visit_statistics(read_sums, trainer->sums);
   trainer->adam = read_adam(in, trainer->architecture);
+  trainer->network = make_training_network(trainer->architecture, std::move(weights));
   if (parts.empty())
-    read_pool(in, *trainer);
+    read_own_states(in, *trainer);
   else
     in.text("parts");
   in.check_checksum();
   if (!parts.empty()) read_part(path, parts, *trainer);
-  trainer->network = make_training_network(trainer->architecture, std::move(weights));
   trainer->torch = torch_network_for(options.device, trainer->architecture, trainer->network.weights);
   return trainer;
 }

@@ -199,7 +199,13 @@ const Options<TeacherOptions>& teacher_options() {
       {choice("quality", &O::quality,
               {{"converged", TeacherQuality::converged}, {"standard", TeacherQuality::standard}},
               "How it makes a frame. `converged`: in one substep, solved closely. `standard`: as a scene without "
-              "solver options does.")});
+              "solver options does."),
+       integer("uses", &O::uses, at_least_one,
+               "How often a state with its target is learned from in the mean: once as the pool advances, and for the "
+               "rest from the `kept` ones. 1: none is kept. More needs one pass a frame."),
+       integer("kept", &O::kept, at_least_one,
+               "Number of states with targets that are kept where `uses` is above 1. A new one takes the oldest one's "
+               "place.")});
   return table;
 }
 
@@ -227,8 +233,9 @@ const Options<OptimiserOptions>& optimiser_options() {
                "Number of states at the start that only feed the statistics of the inputs."),
        flag("freeze_statistics", &O::freeze_statistics,
             "True: the statistics of the inputs stay fixed after the warm-up."),
-       number("decoder_scale", &O::decoder_scale, Unit::none, positive,
-              "Factor on the initial weights of the decoder's last layer.")});
+       number("decoder_scale", &O::decoder_scale, Unit::none, not_negative,
+              "Factor on the initial weights of the decoder's last layer. 0: the network begins with an output of "
+              "zero.")});
   return table;
 }
 
@@ -299,6 +306,12 @@ void check_solver(const TrainingOptions& options, const std::string& where) {
   if (samples.sample_materials == MaterialSampling::vertex)
     throw Error("the solver has one material for each cloth, and no materials by vertex",
                 where + ": samples.sample_materials", "take `garment` or `none`, or a training without the solver");
+  if (options.teacher.uses > 1 && teacher_work(options.objective).potential)
+    throw Error("the solver's potential cannot be kept with a state", where + ": teacher.uses",
+                "leave `objective.potential` out, or `teacher.uses`");
+  if (options.teacher.uses > 1 && options.teacher.kept < options.optimiser.batch)
+    throw Error("a step takes more samples than states are kept", where + ": teacher.kept",
+                "give at least `optimiser.batch`");
   if (samples.start == GarmentStart::cut)
     throw Error("the solver takes no garments without their intersecting triangles", where + ": samples.start",
                 "take `skinned` or `untangle`, or a training without the solver");

@@ -43,12 +43,40 @@ void begin_anew(Trainer& trainer, RollingState& state) {
   }
 }
 
+bool keeps_states(const Trainer& trainer) { return trainer.teacher && trainer.options.teacher.uses > 1; }
+
+// Whether the step learns from states again. One of `uses` steps takes new ones. So do the first steps, until as many
+// states are kept as one of them is used.
+bool is_repetition(const Trainer& trainer) {
+  const int uses = trainer.options.teacher.uses;
+  const auto kept = static_cast<int>(trainer.taught.all.size());
+  return keeps_states(trainer) &&
+         kept >= std::min(std::max(uses, trainer.options.optimiser.batch), trainer.options.teacher.kept) &&
+         trainer.counts.step % uses != 0;
+}
+
+// Draws as many different ones of the kept states as the batch has samples.
+void draw_again(Trainer& trainer) {
+  const int batch = trainer.options.optimiser.batch;
+  trainer.samples.resize(static_cast<std::size_t>(batch));
+  const std::vector<TaughtState*> drawn = trainer.taught.draw(trainer.random, batch);
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    Sample& sample = trainer.samples[k];
+    sample.again = drawn[k];
+    sample.state = &drawn[k]->state;
+    sample.record = {};
+    sample.record.pass = sample.state->pass;
+  }
+}
+
 // Draws as many different states of the pool as the batch has samples.
 void draw_samples(Trainer& trainer) {
+  if (is_repetition(trainer)) return draw_again(trainer);
   std::vector<RollingState*> left;
   for (RollingState& state : trainer.pool) left.push_back(&state);
   trainer.samples.resize(static_cast<std::size_t>(trainer.options.optimiser.batch));
   for (Sample& sample : trainer.samples) {
+    sample.again = nullptr;
     const auto drawn = left.begin() + trainer.random.below(static_cast<int>(left.size()));
     sample.state = *drawn;
     left.erase(drawn);
@@ -64,6 +92,7 @@ void draw_samples(Trainer& trainer) {
 // Asks the teacher for the frames that the samples' states make next, so that they are there when they are drawn.
 void ask_ahead(Trainer& trainer) {
   for (Sample& sample : trainer.samples) {
+    if (sample.again) continue;
     begin_anew(trainer, *sample.state);
     trainer.teacher->ask(*sample.state);
   }
@@ -74,12 +103,17 @@ void make_graphs(Trainer& trainer, const FrameMaking& making) {
   FeatureTables& tables = trainer.network.weights.tables;
   for_samples(trainer.samples, [&](Sample& sample) {
     if (!sample.record.bad.empty()) return;
+    if (sample.again) {
+      sample.graph = sample.again->raw;
+      return;
+    }
     if (!raw_graph_of(making, tables, *sample.state, sample.graph)) sample.record.bad = sample.state->found.refused;
+    if (keeps_states(trainer) && sample.record.bad.empty()) sample.kept = taught_copy(*sample.state, sample.graph);
   });
   if (!trainer.options.optimiser.freeze_statistics && trainer.options.weights.empty()) {
     FeatureSums<double> of_step = empty_sums(making.features);  // where others add theirs
     for (const Sample& sample : trainer.samples) {
-      if (!sample.record.bad.empty()) continue;
+      if (!sample.record.bad.empty() || sample.again) continue;
       const RollingState& state = *sample.state;
       gather(making.features, sample.graph, target_accelerations(state.roll.scene->rest, state.now, making.features),
              trainer.processes ? of_step : trainer.sums);
@@ -235,7 +269,7 @@ void advance(Trainer& trainer, const FrameMaking& making) {
   const PoolOptions& pool = trainer.options.pool;
   std::vector<char> given_up(trainer.samples.size(), 0);
   for_samples(trainer.samples, [&](Sample& sample) {
-    if (!sample.record.bad.empty()) return;
+    if (!sample.record.bad.empty() || sample.again) return;
     RollingState& state = *sample.state;
     const bool last_pass = state.pass + 1 == making.passes;
     if (last_pass && pool.gate > 0) sample.next = gated(making, pool.gate, sample.next, state);
@@ -251,6 +285,11 @@ void advance(Trainer& trainer, const FrameMaking& making) {
       continue;
     }
     trainer.counts.bad_in_a_row = 0;
+    if (sample.again) {
+      ++trainer.counts.again;
+      continue;
+    }
+    if (sample.kept) trainer.taught.add(std::move(sample.kept));
     RollingState& state = *sample.state;
     if (given_up[k]) {
       ++trainer.counts.given_up;

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/host/csv_columns.hpp"
 
 namespace selvedge {
 

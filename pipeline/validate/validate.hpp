@@ -36,7 +36,7 @@ struct ValidationRow {
 };
 
 // Every run of every case: all combinations of its parameters' values. Throws Error for an unknown case, parameter or
-// value. Leaves validate.txt, validate.csv, validate.json in the folder, and plots where gnuplot is there.
+// value. Leaves validate.txt, validate.csv, validate.json in the folder, and plots.
 std::vector<ValidationRow> validate(const ValidateRequest&);
 
 bool passed(const std::vector<ValidationRow>&);  // of those that count every one, and there is one
@@ -46,8 +46,7 @@ std::string validate_markdown(const std::vector<ValidationRow>&);
 std::string validate_csv(const std::vector<ValidationRow>&);
 std::string validate_json(const std::vector<ValidationRow>&);
 
-// Writes cantilever.svg and drape.svg with the gnuplot scripts that made them, those for which there are rows, by
-// gnuplot. Returns what was written, or a line that says why nothing was.
+// Writes cantilever.svg and drape.svg, those for which there are rows. Returns a line that says which.
 std::string plot_validation(const std::vector<ValidationRow>&, const std::filesystem::path& folder);
 
 }  // namespace selvedge

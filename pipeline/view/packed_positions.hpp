@@ -8,11 +8,12 @@
 
 namespace selvedge {
 
-// Positions of a surface over frames as few bytes: whole steps of one grid, each predicted from the frames before and
-// from the vertex before it; what is left is written in Rice codes (R. F. Rice, JPL 79-22, 1979). data.js reads them.
+// Positions of a surface over frames in few bytes: whole steps of one grid, each predicted from the frames before and
+// from the vertex before it. Differences from the prediction are Rice codes (R. F. Rice, JPL 79-22, 1979). data.js
+// reads them.
 //
 // A frame has, for x, y and z in turn: a bit for the prediction in time (0: as in the frame before, 1: on the line
-// through the two frames before), a bit for whether a vertex's rest is told against that of the vertex before it, five
+// through the two frames before), a bit for whether differences are relative to that of the vertex before, five
 // bits for the code's parameter k, then a code a vertex. Bits are read from the highest of a byte on.
 struct PackedPositions {
   double step = 0;  // of the grid [m]
@@ -25,7 +26,8 @@ struct PackedPositions {
   int open_count = 0;
 };
 
-// A step of at most 0.1 mm, and of a 32,768th of the longest side of the box round these positions [m].
+// A step of at most 0.1 mm [m]. A box round these positions whose longest side is below 3.3 m has a 32,768th of that,
+// but no less than 0.1 um, with which a surface may move 100 m, and no less than floats are rounded by where it is.
 double grid_step(const PointsF&);
 
 // Adds a frame; all frames have as many vertices. The code is whole at any time once `closed` was called on a copy.

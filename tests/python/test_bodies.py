@@ -105,6 +105,8 @@ def test_mistakes_say_what_and_where():
     refused(["pins", "vertex 60"], scene.add_garment, *sleeve, pins=[60])
     refused(["fit", "tigth"], scene.add_garment, *sleeve, fit="tigth")
     refused(["start.from", "drapd", "draped"], scene.add_garment, *sleeve, start={"from": "drapd"})
+    refused(["garment", "leave it out"], scene.add_garment, *sleeve, garment={"fit": "tight"})
+    refused(["body", "leave it out"], body, x, triangles, joints, weights, parents, body={"clip": "walk"})
 
 
 def test_materials_are_those_of_scene_files(tmp_path):

@@ -90,6 +90,7 @@ def test_a_program_that_is_changed_meanwhile_is_refused(tmp_path):
         ({"retries": -1}, "retries: is -1"),
         ({"program": "no-such-program"}, "no-such-program: no such program"),
         ({"file": "absent.json"}, "selvedge cells: absent.json: no such file"),
+        ({"out": __file__}, "cannot make this folder"),
     ],
 )
 def test_bad_arguments(tmp_path, options, says):

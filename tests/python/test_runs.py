@@ -2,13 +2,11 @@
 
 import os
 import pathlib
-import signal
 import subprocess
-import threading
-import time
 
 import numpy as np
 import pytest
+from interrupting import interrupted_when
 
 import selvedge
 
@@ -76,6 +74,27 @@ def test_a_run_is_one_array_with_what_was_in_the_scene(scene_file, tmp_path):
         f"<selvedge.Trajectory: 9 frames at 30 frames a second; 1 cloth of {len(scene.rest)} vertices, "
         f"{len(scene.triangles)} triangles; 2 obstacles>"
     )
+
+
+def test_a_recording_takes_the_place_of_an_earlier_run(run, scene_file, tmp_path):
+    for name in ("summary.json", "view.html", "checkpoint.h5"):
+        (run / name).write_text("of an earlier run")
+    (run / "notes.txt").write_text("of the user")
+    scene = selvedge.Scene(scene_file)
+
+    def look(scene):
+        assert sorted(os.listdir(run)) == ["notes.txt", "run.h5", "run.lock"]
+        with pytest.raises(selvedge.Error, match="another run writes into this folder"):
+            selvedge.simulate(selvedge.Scene(scene_file), 1, out=run)
+        with pytest.raises(selvedge.Error, match="recorded already"):
+            selvedge.simulate(scene, 8, out=tmp_path / "second")
+
+    assert selvedge.simulate(scene, 2, look, out=run) == 2
+    assert sorted(os.listdir(run)) == ["notes.txt", "run.h5"]
+    assert len(selvedge.read_trajectory(run)["x"]) == 3
+    (tmp_path / "file").write_text("")
+    with pytest.raises(selvedge.Error, match="cannot make this folder"):
+        selvedge.simulate(scene, 3, out=tmp_path / "file" / "run")
 
 
 def test_some_frames_and_an_array_in_a_file(run, tmp_path):
@@ -161,6 +180,18 @@ def test_obstacles_say_where_they_are_before_and_after_a_step():
     assert scene.obstacles[0]["x"] == pytest.approx(floor["x"] + [0, 0.01, 0])
 
 
+def test_an_obstacle_that_is_refused_leaves_nothing():
+    scene = falling()
+    with pytest.raises(selvedge.Error, match="vertex 9"):
+        scene.add_obstacle([[0, 0, 0], [1, 0, 0], [0, 0, 1]], [[0, 1, 9]], name="bad")
+    far = {"translate": [999999.5, 0, 0]}  # a vertex lies beyond 1000 km
+    with pytest.raises(selvedge.Error, match="in row 1"):
+        scene.add_body([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [[0, 0, 0]], [[1]] * 3, [-1], **far)
+    assert [one["name"] for one in scene.obstacles] == ["floor"]
+    scene.add_obstacle([[5, 0, 0], [6, 0, 0], [5, 0, 1]], [[0, 1, 2]], name="good")
+    assert scene.step() and [one["name"] for one in scene.obstacles] == ["floor", "good"]
+
+
 def test_a_saved_state_goes_on_with_the_same_bits(tmp_path, scene_file):
     for make in (falling, lambda: selvedge.Scene(scene_file)):
         scene = make()
@@ -243,16 +274,9 @@ def test_drapes_are_made_and_trained_on_and_ctrl_c_ends_a_training(tmp_path):
     # It would go on for hours: Ctrl-C comes while the work is in C++.
     long = [*given, "backbone.stage.steps=100000000"]
 
-    def interrupt():
-        while not (tmp_path / "long" / "config.yaml").exists():
-            time.sleep(0.01)
-        os.kill(os.getpid(), signal.SIGINT)
-
-    waiting = threading.Thread(target=interrupt)
-    waiting.start()
-    with pytest.raises(KeyboardInterrupt):
+    begun = (tmp_path / "long" / "config.yaml").exists
+    with pytest.raises(KeyboardInterrupt), interrupted_when(begun):
         selvedge.train(training, tmp_path / "long", long, log=None)
-    waiting.join()
     assert list((tmp_path / "long").glob("*.h5"))  # the checkpoint of its first stage
 
     def fail(line):

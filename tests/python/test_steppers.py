@@ -1,10 +1,14 @@
 """Steppers written in Python."""
 
 import gc
+import json
+import pathlib
+import threading
 import weakref
 
 import numpy as np
 import pytest
+from interrupting import interrupted_when
 
 import selvedge
 
@@ -169,3 +173,59 @@ def test_a_class_that_refers_to_its_scene_goes_with_it():
     del Refers, scene
     gc.collect()
     assert left() is None
+
+
+def test_one_thread_at_a_time_works_on_a_scene():
+    refused = []
+
+    class Nested(Thrown):
+        def step(self, start, drive, dt):
+            def meddle():
+                for work in (scene.step, lambda: scene.move_obstacle(0, square(-1)[0]), lambda: selvedge.step([scene])):
+                    with pytest.raises(selvedge.Error, match="is being stepped"):
+                        work()
+                    refused.append(work)
+
+            meddle()
+            other = threading.Thread(target=meddle)
+            other.start()
+            other.join()
+            return super().step(start, drive, dt)
+
+    scene = selvedge.Scene(stepper=Nested)
+    scene.add_cloth(*square())
+    scene.add_obstacle(*square(-1))
+    assert scene.step() and scene.step() and scene.frame == 2 and len(refused) == 12
+    scene.move_obstacle(0, square(-1)[0])
+
+
+def test_a_comparison_lets_other_threads_go_on_says_lines_and_ends_with_ctrl_c(scene_file, tmp_path):
+    lines = []
+    (tmp_path / "comparison.yaml").write_text(COMPARISON)
+    selvedge.compare(tmp_path / "comparison.yaml", kinds={"thrown": Thrown}, out=tmp_path / "out", log=lines.append)
+    assert any("thrown" in line for line in lines) and not any("\n" in line for line in lines)
+
+    # Minutes of work without a line of Python: only another thread can see that it has begun.
+    long = COMPARISON.split("settings")[0] + "settings: [{name: long, set: [run.frames=99999]}]\n"
+    (tmp_path / "comparison.yaml").write_text(long)
+    begun = lambda: list((tmp_path / "long").glob("cells/.fall.*/run.lock"))
+    with pytest.raises(KeyboardInterrupt), interrupted_when(begun):
+        selvedge.compare(tmp_path / "comparison.yaml", out=tmp_path / "long", log=None)
+    assert not (tmp_path / "long" / "cells" / "fall").exists()
+
+    def fail(line):
+        raise ZeroDivisionError
+
+    (tmp_path / "comparison.yaml").write_text(COMPARISON)
+    with pytest.raises(ZeroDivisionError):
+        selvedge.compare(tmp_path / "comparison.yaml", kinds={"thrown": Thrown}, out=tmp_path / "failed", log=fail)
+
+
+def test_results_are_kept_for_this_extension_and_not_for_every_one_of_the_interpreter(scene_file, tmp_path):
+    (tmp_path / "comparison.yaml").write_text(COMPARISON)
+    selvedge.compare(tmp_path / "comparison.yaml", kinds={"thrown": Thrown}, out=tmp_path / "out", log=None)
+    extension = 0xCBF29CE484222325  # Fowler, Noll and Vo's hash, variant 1a
+    for byte in pathlib.Path(selvedge._selvedge.__file__).read_bytes():
+        extension = (extension ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    record = json.loads((tmp_path / "out" / "cells" / "fall" / "cell.json").read_text())
+    assert record["program"] == f"{extension:016x}"

@@ -169,7 +169,7 @@ class Scene:
     def restore(self, file: Path) -> None:
         """Goes back to a state that save wrote of this scene, or of one that was made of the same arrays or files. The
         next steps have the same bits."""
-    def _record(self, file: Path) -> None:
+    def _record(self, folder: Path) -> None:
         """Records the present state and every frame after it."""
     def _end_recording(self) -> None:
         """Closes the file of a recording."""
@@ -274,10 +274,12 @@ def compare(
     out: Path = ...,
     overrides: Sequence[str] = ...,
     short: bool = ...,
+    log: Log = ...,
 ) -> dict[str, Any]:
     """Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. What is
-    finished is kept in the folder out, by the file's settings: empty it when a class has changed. Returns what
-    compare.json holds, and table, a text."""
+    finished is kept in the folder out, by the file's settings: empty it when a class has changed. log: called with a
+    line as each part ends; None: silent. Ctrl-C keeps the parts that are done. Returns what compare.json holds, and
+    table, a text."""
 def step(scenes: list[Scene]) -> list[bool]:
     """Steps every scene of a list by one frame, a thread a scene, on the threads that there are (OMP_NUM_THREADS), with
     the same bits as one by one. Returns what Scene.step returns, a list. Where a scene raises an error, the others are

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True)
 class SceneArrays:
-    """What stays during a run. n: vertices of all cloths together, m: their triangles."""
+    """The constants of a run. n: vertices of all cloths together, m: their triangles."""
 
     rest: np.ndarray  # n x 3, rest positions [m]
     triangles: np.ndarray  # m x 3
@@ -34,7 +34,7 @@ class StepStart:
 
 @dataclasses.dataclass(frozen=True)
 class StepDrive:
-    """What the world imposes, at the end of the step."""
+    """The prescribed part of the step's end."""
 
     pins: np.ndarray  # positions of the pins, p x 3 [m]
     obstacles: list[np.ndarray]  # [m]
@@ -46,14 +46,14 @@ class StepDrive:
 class Stepper:
     """A stepper. An instance is made for each scene; arrays that it is given are copies of its own.
 
-    Its states are audited as those of any other, and pins are put where the drive wants them, whatever `step` returns.
-    It holds what it must remember itself, so that a run of it cannot be resumed.
+    Its states are audited as those of any other stepper. Pins are put at the positions of the drive, whatever `step`
+    returns. It keeps its memory in itself, so that a run of it cannot be resumed.
     """
 
     needs_worn = False  # a scene must have cloth that a body wears
     needs_obstacles = False
-    may_leave_out_cloths = False  # stepping a part of the cloths gives what stepping all of them gives of these
-    # Forces of a scene that it lacks, so that a run shows no energy of theirs: "membrane", "bending (curvature)",
+    may_leave_out_cloths = False  # True: a step of some cloths alone gives them the same motion
+    # Forces that it does not model, so that a run shows no energy of theirs: "membrane", "bending (curvature)",
     # "bending (hinge)", "springs", "stiffness damping", "mass damping", "wind".
     ignores: tuple[str, ...] = ()
 
@@ -62,5 +62,5 @@ class Stepper:
 
     def step(self, start: StepStart, drive: StepDrive, dt: float):
         """Steps by dt [s]. Returns positions x, n x 3 [m], or (x, v) with velocities [m/s], which are (x - start.x) / dt
-        otherwise. None rejects the step, and so does what is not finite."""
+        otherwise. None, and numbers that are not finite, reject the step."""
         raise NotImplementedError

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "learned/graph/carried_frames.hpp"
+#include "collision/geometry/turned_frames.hpp"
 #include "learned/graph/elastic_motion.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/node_columns.hpp"

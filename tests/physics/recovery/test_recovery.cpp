@@ -332,6 +332,43 @@ TEST_CASE("recovery: a tangled cloth is put through no floor", "[recovery]") {
   }
 }
 
+TEST_CASE("recovery: cloth that starts in the plane of a floor comes to lie on the side to which it points",
+          "[recovery]") {
+  for (const bool down : {false, true}) {
+    testing::Sheet floor = sheet(6, 1, 0);
+    if (down) floor.triangles.col(0).swap(floor.triangles.col(1));
+    World w = make_world(sheet(8, 0.3, 0));
+    add_obstacle(w, floor);
+    w.drive.acceleration = Vec3(0, down ? 9.81 : -9.81, 0);
+    State state = w.state, to;
+    const auto stepper = make_recovering_conventional_stepper(w.scene, {});
+    for (int frame = 0; frame < 15; ++frame) {
+      REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+      std::swap(state, to);
+    }
+    CHECK(state.clean);
+    const Eigen::VectorXd height = (down ? -1 : 1) * state.x.col(1);
+    CHECK(height.minCoeff() > 0);
+    CHECK(height.maxCoeff() < 0.01);
+  }
+}
+
+TEST_CASE("recovery: layers at one place are put through no floor, whole layers neither", "[recovery]") {
+  const testing::Sheet one = sheet(8, 0.3, 0.002), two = testing::join(one, one);
+  World w = make_world(testing::join(two, two));
+  add_obstacle(w, sheet(6, 1, 0));
+  w.scene.contact.thickness = 3e-3;
+  w.drive.acceleration = Vec3(0, -9.81, 0);
+  State state = w.state, to;
+  const auto stepper = make_recovering_conventional_stepper(w.scene, {});
+  for (int frame = 0; frame < 8; ++frame) {
+    REQUIRE(testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to).status == StepStatus::accepted);
+    std::swap(state, to);
+    INFO("frame " << frame);
+    CHECK(state.x.col(1).minCoeff() > 0);
+  }
+}
+
 TEST_CASE("recovery: left alone is what is tangled with cloth wholly, and with an obstacle at one vertex or caught",
           "[recovery]") {
   World w = make_world(sheet(2, 0.4, 0));

@@ -23,7 +23,7 @@ TEST_CASE("carried: cloth goes along with its skinned target, and keeps a part o
           "[carried]") {
   World world = make_world(testing::sheet(5, 0.2, 1));
   world.drive.acceleration = {0, -9.81, 0};
-  const auto stepper = make_carried_stepper(world.scene, {.kept = 0.6});
+  const auto stepper = make_carried_stepper(world.scene);
   State first, second, third;
   world.state.v.setConstant(0.3);
   world.drive.skinned_targets = moved(world, {0, 0, 0});
@@ -40,6 +40,53 @@ TEST_CASE("carried: cloth goes along with its skinned target, and keeps a part o
   world.drive.skinned_targets = moved(world, {0, 0, 0.05});
   testing::frame(world.scene, *stepper, second, world.drive, dt, third);
   CHECK((third.x - pushed).isApprox(moved(world, {0.006, 0, 0.03}) - world.state.x, 1e-9));
+}
+
+TEST_CASE("carried: the default set gives the bits of the formula, and other sets give their sum", "[carried]") {
+  World world = make_world(testing::sheet(4, 0.2, 1));
+  world.drive.skinned_targets = moved(world, {0.013, 0.007, 0.003});
+  State before = world.state, from = world.state;
+  before.memory = carried_memory({}, world.drive, before.x);
+  from.x = moved(world, {0.017, 0.011, 0.005});
+  world.drive.skinned_targets = moved(world, {0.019, 0.007, 0.003});
+  from.memory = carried_memory(before, world.drive, from.x, 2);
+  const Points now = world.drive.skinned_targets, motion = *find_rows(from.memory, "carried.motion", 25);
+  world.drive.skinned_targets = moved(world, {0.031, 0.002, 0.009});
+  Points expected = from.x;
+  for (Eigen::Index v = 0; v < expected.rows(); ++v) {
+    expected.row(v) += world.drive.skinned_targets.row(v) - now.row(v);
+    expected.row(v) += 0.6 * motion.row(v);
+  }
+  CHECK(carried_guess(world.scene, from, world.drive, dt) == expected);
+  CarriedModel model;
+  model.own = model.scene.transpose().replicate(25, 1);
+  CHECK(carried_guess(world.scene, from, world.drive, dt, model) == expected);
+  model.own(3, static_cast<int>(CarriedTerm::offset)) = -0.5;
+  const Points guess = carried_guess(world.scene, from, world.drive, dt, model);
+  CHECK((guess.row(3) - expected.row(3) + 0.5 * (from.x - now).row(3)).norm() < 1e-12);
+  CHECK(guess.row(4) == expected.row(4));
+}
+
+TEST_CASE("carried: where memory lacks a frame that a model asks for, the default set steps", "[carried]") {
+  World world = make_world(testing::sheet(5, 0.2, 1));
+  CarriedModel model;
+  model.scene[static_cast<int>(CarriedTerm::motion_before)] = -0.3;
+  model.scene[static_cast<int>(CarriedTerm::target)] = 0.5;
+  const auto fitted = make_carried_stepper(world.scene, model, "carried_fitted"),
+             standard = make_carried_stepper(world.scene);
+  CHECK(fitted->traits().past_frames == 2);
+  CHECK(standard->traits().past_frames == 1);
+  State a = world.state, b = world.state;
+  for (int f = 0; f < 3; ++f) {
+    world.drive.skinned_targets = moved(world, {0.01 * f * f, 0, 0});
+    State next_a, next_b;
+    testing::frame(world.scene, *fitted, a, world.drive, dt, next_a);
+    testing::frame(world.scene, *standard, b, world.drive, dt, next_b);
+    CHECK((next_a.x == next_b.x) == (f < 2));
+    a = next_a, b = next_b;
+    CHECK(a.memory.size() == (f == 0 ? 2u : 4u));
+    CHECK(b.memory.size() == 2);
+  }
 }
 
 TEST_CASE("carried: cloth that nothing wears falls freely, and pins go where the drive has them", "[carried]") {

@@ -96,6 +96,28 @@ TEST_CASE("guard: cloth that glides slowly does not stop or turn back without a 
   CHECK(verdict_of(guard, stage, thrown, w.state.x - 0.5 * way) == Verdict::admitted);
 }
 
+TEST_CASE("guard: cloth that nothing holds or touches falls as gravity says", "[guard]") {
+  World w = testing::make_world(testing::sheet(6, 0.2, 0));
+  w.state.v.col(1).setConstant(-1);
+  Guard guard(w.scene, {});
+  ContactStage stage(w.scene);
+  const RecordedStep step{w.state, w.state, w.state, w.drive};
+  const auto flown = [&](double share) -> Points {
+    return (w.state.x + dt * w.state.v).rowwise() + share * dt * dt * w.drive.acceleration.transpose();
+  };
+  CHECK(verdict_of(guard, stage, step, flown(1)) == Verdict::admitted);    // one implicit step
+  CHECK(verdict_of(guard, stage, step, flown(0.5)) == Verdict::admitted);  // an exact flight
+  CHECK(verdict_of(guard, stage, step, flown(0)) == Verdict::unbalanced);
+  CHECK(verdict_of(guard, stage, step, flown(1.5)) == Verdict::unbalanced);
+  CHECK(verdict_of(guard, stage, step, flown(-0.5)) == Verdict::unbalanced);
+  // What holds it may carry it.
+  w.scene.pins = {0};
+  w.drive.pins = w.state.x.topRows(1) + dt * w.state.v.topRows(1);
+  Guard held(w.scene, {});
+  ContactStage beside(w.scene);
+  CHECK(verdict_of(held, beside, {w.state, w.state, w.state, w.drive}, flown(0)) == Verdict::admitted);
+}
+
 TEST_CASE("guard: what touches is left out of the residual", "[guard]") {
   World w = testing::make_world(testing::sheet(6, 0.2, 0.003));
   add_obstacle(w, testing::sheet(3, 0.6, 0));

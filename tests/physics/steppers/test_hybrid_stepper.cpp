@@ -339,6 +339,29 @@ TEST_CASE("hybrid: behind the response, motion, audits and energy alone decide",
   CHECK(energy);
 }
 
+TEST_CASE("hybrid: behind the response, pins that move explain no shaken cloth", "[hybrid]") {
+  const World w = testing::swinging_sheet();
+  const Propose shaken = [](const State&, const Points& solved) {
+    Points x = solved;
+    for (Eigen::Index i = 11; i < x.rows(); ++i) x(i, 2 * (i % 2)) += 3e-3 * std::sin(17.0 * static_cast<double>(i));
+    return x;
+  };
+  HybridOptions options;
+  options.mode = HybridMode::response;
+  const auto stepper = hybrid(w.scene, shaken, options);
+  Drive drive = w.drive;
+  drive.acceleration.setZero();
+  State state = w.state, to;
+  state.v.col(0).setConstant(3);
+  std::vector<Verdict> verdicts;
+  for (int f = 0; f < 2; ++f) {
+    drive.pins.col(0).array() += 3 * dt;
+    verdicts.push_back(testing::frame(w.scene, *stepper, state, drive, dt, to).verdict);
+    std::swap(state, to);
+  }
+  CHECK(verdicts == std::vector<Verdict>{Verdict::no_history, Verdict::energy_gain});
+}
+
 TEST_CASE("hybrid: a rough step is made by the refiner from the proposal", "[hybrid]") {
   const World w = testing::swinging_sheet();
   HybridOptions options;

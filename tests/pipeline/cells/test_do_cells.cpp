@@ -80,7 +80,14 @@ TEST_CASE("cells: a cell that is stopped or killed in its middle leaves nothing 
   CellWatch stopped;
   stopped.stop = [] { return true; };
   CHECK_FALSE(do_cell(list, 0, folder.path, stopped));
-  CHECK_FALSE(fs::exists(cell_folder(folder.path, "a")));
+  CHECK(fs::is_empty(folder.path / "cells"));
+  CellList failing = list;
+  failing.run = [](std::size_t, const fs::path& into, const CellWatch&) -> std::optional<CellResult> {
+    write_file(into / "half.txt", "half");
+    throw Error("is not there", "scene.yaml", "put it there");
+  };
+  CHECK_THROWS_WITH(do_cell(failing, 0, folder.path, {}), Contains("scene.yaml"));
+  CHECK(fs::is_empty(folder.path / "cells"));
 
   const pid_t child = fork();
   if (child == 0) {
@@ -100,6 +107,22 @@ TEST_CASE("cells: a cell that is stopped or killed in its middle leaves nothing 
   CHECK_FALSE(done->kept);
   CHECK_FALSE(fs::exists(cell_folder(folder.path, "a") / "stale.txt"));
   CHECK_FALSE(fs::exists(work_folder(folder, "a")));
+}
+
+TEST_CASE("cells: a result has the key of the settings that it began with", "[cells]") {
+  const Folder folder("cells_edited");
+  std::string settings = "before";
+  CellList list = three();
+  list.key = [&](std::size_t) { return settings; };
+  const auto run = list.run;
+  list.run = [&](std::size_t k, const fs::path& into, const CellWatch& watch) {
+    settings = "edited while the cell was done";
+    return run(k, into, watch);
+  };
+  REQUIRE(do_cell(list, 0, folder.path, {}));
+  CHECK(find_cell(list, 0, folder.path).state == CellState::of_other_settings);
+  settings = "before";
+  CHECK(find_cell(list, 0, folder.path).state == CellState::there);
 }
 
 TEST_CASE("cells: a list that keeps parts goes on with what a stopped try has left", "[cells]") {
@@ -190,8 +213,10 @@ TEST_CASE("cells: a result that cannot be read does not count", "[cells]") {
   do_cell(list, 0, folder.path, {});
   const fs::path file = cell_folder(folder.path, "a") / "cell.json";
   const std::string whole = fake::whole(file);
+  auto other_row = nlohmann::json::parse(whole);
+  other_row["row"] = 5;
   for (const std::string& text : {std::string(), whole.substr(0, whole.size() / 2), std::string("[]"),
-                                  std::string("{\"cell\": \"a\", \"positions_hash\": 3}")}) {
+                                  std::string("{\"cell\": \"a\", \"positions_hash\": 3}"), other_row.dump()}) {
     write_file(file, text);
     CHECK(find_cell(list, 0, folder.path).state == CellState::missing);
   }

@@ -396,16 +396,18 @@ TEST_CASE("no message of a library stands alone, and none ends early") {
 #endif
 }
 
-TEST_CASE("help stands in three groups, and a mistyped command names its neighbour") {
+TEST_CASE("help stands in four groups, and a mistyped command names its neighbour") {
   const fake::Folder folder("main_help");
   const Ended help = selvedge_program(folder, "--help");
   REQUIRE(help.status == 0);
   const std::size_t use = help.out.find("\nUse"), prepare = help.out.find("\nPrepare"),
-                    measure = help.out.find("\nMeasure");
+                    measure = help.out.find("\nMeasure"), works = help.out.find("\nLong works");
   REQUIRE((use != std::string::npos && prepare != std::string::npos && measure != std::string::npos));
   REQUIRE(help.out.find("  simulate") > use);
   REQUIRE(help.out.find("  dress") > prepare);
   REQUIRE(help.out.find("  validate") > measure);
+  REQUIRE(works > help.out.find("  validate"));
+  REQUIRE((works < help.out.find("  cells") && help.out.find("  gather") != std::string::npos));
   const Ended mistyped = selvedge_program(folder, "simulat scene.yaml");
   REQUIRE(mistyped.status == 2);
   REQUIRE(mistyped.err.find("there is no command `simulat`; did you mean `simulate`?") != std::string::npos);

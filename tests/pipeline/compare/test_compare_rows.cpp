@@ -8,8 +8,8 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/cells/do_cells.hpp"
 #include "pipeline/compare/compare.hpp"
+#include "pipeline/compare/compare_plots.hpp"
 #include "pipeline/compare/compare_run.hpp"
-#include "pipeline/host/gnuplot.hpp"
 #include "tests/learned/learned_scenes.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/source_root.hpp"
@@ -251,16 +251,6 @@ TEST_CASE("compare: a row that did not come to its end is on no front", "[compar
   CHECK(rows[1].front);  // nor does it put others off
 }
 
-TEST_CASE("svg plots: the failed stand at the upper edge, the floor is drawn", "[compare]") {
-  const std::vector<PlotPoint> points{
-      {"a", 10, 2, PlotMark::front}, {"b", 20, std::nan(""), PlotMark::failed}, {"c < d", 30, 3, PlotMark::unclean}};
-  const std::string svg = scatter_svg("title", "x", "y", points, 1);
-  CHECK_THAT(svg, Contains("class='failed'") && Contains("class='floor'") && Contains("c &lt; d"));
-  CHECK(scatter_svg("title", "x", "y", {{"a", 10, std::nan(""), PlotMark::failed}}, 0).empty());
-  CHECK_THAT(curves_svg("title", "frame", {{"a", {3, 2, 1}}}), Contains("<polyline"));
-  CHECK(curves_svg("title", "frame", {}).empty());
-}
-
 TEST_CASE("plots: a row is marked as on the page", "[compare]") {
   const Folder folder("compare_plots");
   CompareResult result;
@@ -286,14 +276,11 @@ TEST_CASE("plots: a row is marked as on the page", "[compare]") {
     CHECK(mark_of(result.rows[k], 1e-3) == marks[k]);
   }
   CHECK(mark_of(result.rows[1], std::nan("")) == PlotMark::failed);
-  if (!gnuplot_is_there()) {
-    CHECK(plot_comparison(result, folder.path) == no_gnuplot);
-    return;
-  }
   CHECK_THAT(plot_comparison(result, folder.path), Contains("one_temporal.svg"));
-  CHECK_THAT(fake::whole(folder.path / "one_temporal.gnuplot"),
-             Contains("$unclean << EOD\n30 0.001 \"crossing\"\n40 0.001 \"passing\"\nEOD") &&
-                 Contains("$failed << EOD\n50 0.001") && Contains("'floor'"));
+  const std::string svg = fake::whole(folder.path / "one_temporal.svg");
+  CHECK_THAT(svg, Contains(">fast</text>") && Contains("class='front'") && Contains("class='unclean'") &&
+                      Contains("class='failed'") && Contains("class='floor'"));
+  CHECK_FALSE(std::filesystem::exists(folder.path / "one_algebraic.svg"));  // no row has such an error
 }
 
 TEST_CASE("compare: rows of networks step once a frame, and what failed is said on the page", "[compare]") {

@@ -3,10 +3,13 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "pipeline/compare/sequences.hpp"
+#include "pipeline/host/write_file.hpp"
+#include "tests/pipeline/files.hpp"
 #include "tests/source_root.hpp"
 
 namespace selvedge::test_evaluation {
@@ -133,6 +136,48 @@ TEST_CASE("evaluation: bodies of tangled starts are not those with which a bare 
   };
   CHECK_THROWS_WITH(with_seed("1"), Catch::Contains("bodies of its training") && Catch::Contains("sequences.seed"));
   CHECK(with_seed("2811") == 2);
+}
+
+TEST_CASE("evaluation: a tangled start is searched once, and then read from the cache", "[evaluation][cells]") {
+  const fake::Folder cache("tangled_cache");
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string restored = before ? before : "";
+  setenv("XDG_CACHE_HOME", cache.path.c_str(), 1);
+  Comparison comparison;
+  comparison.file = source_root() / "configs" / "compare" / "tangled.yaml";
+  SequenceOptions& sequences = comparison.sequences;
+  sequences.file = "../evaluation/sequence.yaml";
+  sequences.outfits = {"summer"};
+  sequences.clips = {"walk_turning"};
+  sequences.count = sequences.tangled = 1;
+  sequences.frames = 10;
+  add_sequences(comparison);
+  REQUIRE(comparison.scenes.size() == 1);
+  const CompareScene named = comparison.scenes[0];
+  CHECK(named.name == "summer_tangled_0");
+  CHECK_FALSE(std::filesystem::exists(cache.path / "selvedge"));  // nothing was made or searched
+
+  TangledSearch search, none;
+  const auto found = [&](const std::string& program, TangledSearch& by) {
+    CompareScene scene = named;
+    find_start(comparison, program, nullptr, by, scene);
+    CHECK_FALSE(scene.sequence);
+    return scene.overrides;
+  };
+  const std::vector<std::string> overrides = found("program", search);
+  CHECK(overrides.size() == named.overrides.size() + 3);
+  CHECK(search.makers.size() == 1);
+  CHECK(found("program", none) == overrides);
+  CHECK(none.makers.empty());
+  std::vector<std::filesystem::path> kept;
+  for (const auto& entry : std::filesystem::directory_iterator(cache.path / "selvedge" / "tangled"))
+    kept.push_back(entry.path());
+  REQUIRE(kept.size() == 1);
+  CHECK(found("other program", search) == overrides);  // searched again, and kept in its place
+  CHECK(fake::whole(kept[0]).starts_with("other program "));
+  write_file(kept[0], "something else\n");
+  CHECK(found("program", search) == overrides);
+  before ? setenv("XDG_CACHE_HOME", restored.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
 }
 
 }  // namespace selvedge::test_evaluation

@@ -5,9 +5,9 @@
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
-#include "pipeline/training/csv_charts.hpp"
 #include "tests/pipeline/files.hpp"
 
 // Coarse garments of 300 vertices, of stored seeds, go all the way: drapes, networks with every row, and the report

@@ -192,6 +192,7 @@ TEST_CASE("Files that are no scenes are refused", "[config]") {
   CHECK_THAT(refusal("just words"), Contains("key: value"));
   CHECK_THAT(refusal("cloths: [\n"), Contains("not YAML") && Contains("cure: "));
   CHECK_THAT(refusal("a: b: c\n"), Contains("scene.yaml:1"));
+  CHECK_THAT(refusal("cloths: [{disc: {}}]\n---\nrun: {frames: 2}\n"), Contains("more than one YAML document"));
   CHECK_THAT(refusal("cloths: []\n"), Contains("at least one cloth"));
   CHECK_THAT(refusal("gravity: [0, 0, 0]\n"), Contains("`cloths` is missing"));
   CHECK_THAT(refusal("cloths: {rectangle: {}}\n"), Contains("list"));

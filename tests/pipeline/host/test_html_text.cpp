@@ -2,9 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "pipeline/host/gnuplot.hpp"
-#include "tests/pipeline/files.hpp"
-
 namespace selvedge::test_html_text {
 
 TEST_CASE("Text ends neither an element nor an attribute", "[html_text]") {
@@ -15,19 +12,6 @@ TEST_CASE("Text ends neither an element nor an attribute", "[html_text]") {
 TEST_CASE("Text is one part of a URL", "[html_text]") {
   CHECK(url_text("run-1_a.b~c") == "run-1_a.b~c");
   CHECK(url_text("a/b?c#d%'\" <\xC3\xA9") == "a%2Fb%3Fc%23d%25%27%22%20%3C%C3%A9");
-}
-
-TEST_CASE("Names of folders and plots are no commands", "[html_text]") {
-  if (!gnuplot_is_there()) {
-    WARN("skipped: gnuplot is absent");
-    return;
-  }
-  const fake::Folder folder("gnu'plot $(touch told)");
-  const std::string name = "a'; touch told; 'b";
-  CHECK(make_plot(folder.path, name, "plot x\n"));
-  CHECK(std::filesystem::exists(folder.path / (name + ".svg")));
-  CHECK_FALSE(std::filesystem::exists(folder.path / "told"));
-  CHECK_FALSE(std::filesystem::exists("told"));
 }
 
 }  // namespace selvedge::test_html_text

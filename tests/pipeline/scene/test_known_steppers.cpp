@@ -5,6 +5,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "physics/frame/frame_audits.hpp"
+#include "pipeline/formats/carried_model_hdf5.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
@@ -41,6 +42,10 @@ Setup scene_for(const std::string& kind, const Folder& folder, std::vector<std::
                 const fake::NarrowNetwork& network = fake::narrow_network("contourcraft")) {
   if (kind == "learned" || kind == "hybrid") {
     write_weight_file(folder.path / "w.h5", {network.architecture, network.weights, "", {}, ""});
+    overrides.push_back("run.learned.weights=w.h5");
+  }
+  if (kind == "carried_fitted") {
+    write_taught_carried(folder.path / "w.h5", {{}, {"walk"}, 1, 36});
     overrides.push_back("run.learned.weights=w.h5");
   }
   overrides.push_back("run.stepper=" + kind);
@@ -248,7 +253,7 @@ TEST_CASE("known steppers: a run says what of the scene its stepper ignores, and
     const auto left_out = std::ranges::count_if(plan, [&](const PlanLine& l) { return l.in && is_ignored(l.feature); });
     CHECK(std::ssize(ignored_lines(setup.scene, stepper->traits())) == left_out);
     const bool none = is_ignored("springs");
-    CHECK(none == (kind == "learned" || kind == "carried"));
+    CHECK(none == (kind == "learned" || kind == "carried" || kind == "carried_fitted"));
     RunRequest request;
     request.out = folder.path / "out";
     const RunSummary summary = run_scene(setup, *prepare(setup), *stepper, request);

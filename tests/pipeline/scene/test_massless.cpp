@@ -85,6 +85,12 @@ TEST_CASE("A triangle without area along the rim meets nothing of the sheet that
   CHECK(filler.scene.surface.triangles.rows() == 4);
 }
 
+TEST_CASE("A cloth of which no triangle has an area is an error", "[massless]") {
+  const fake::Folder folder("massless_all");
+  CHECK_THROWS_WITH(with_mesh(folder, "v 0 0 0\nv 0.1 0 0\nv 0.3 0 0\nf 1 2 3\n"),
+                    Catch::Contains("has no triangle with an area in its rest shape"));
+}
+
 TEST_CASE("A pin holds a vertex without mass, and the cloth falls all the same", "[massless]") {
   const fake::Folder folder("massless_pin");
   const Setup setup = with_mesh(folder, sheet("v 0.02 0.5 0.05\n", "f 8 50 9\n"), ", pins: [{vertices: [49]}]");

@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
@@ -111,6 +111,26 @@ TEST_CASE("cells: a scene that has changed makes its result one of other setting
   CHECK(before == read_cells(fake::write(moved, "shots.yaml", two_shots)).key(0));
   fake::write(folder, "hanging.yaml", std::string(hanging) + "wind: {velocity: [1, 0, 0]}\n");
   CHECK(before != read_cells(folder.path / "shots.yaml").key(0));
+}
+
+TEST_CASE("cells: a cell needs the materials and outfits that its scene finds by name", "[cells]") {
+  const Folder folder("work_near");
+  fs::create_directories(folder.path / "materials");
+  fs::create_directories(folder.path / "scenes");
+  fake::write(folder, "materials/mine.yaml", "density: 0.3\n");
+  fake::write(folder, "scenes/hanging.yaml", hanging);
+  const CellList list = read_cells(
+      fake::write(folder, "shots.yaml",
+                  "cells: shots\nshots: [{scene: scenes/hanging.yaml, set: [cloths.sheet.material=mine]}]\n"));
+  const std::string before = list.key(0);
+  const std::vector<fs::path> needs = list.describe(0).needs;
+  const fs::path material = (folder.path / "materials" / "mine.yaml").lexically_normal();
+  CHECK(std::ranges::find(needs, material) != needs.end());
+  fake::write(folder, "materials/mine.yaml", "density: 0.4\n");
+  CHECK(read_cells(folder.path / "shots.yaml").key(0) != before);
+  // The program's own are not among them.
+  for (const fs::path& need : read_cells(config_folder() / "work" / "shots.yaml").describe(0).needs)
+    CHECK(need.parent_path().filename() != "materials");
 }
 
 TEST_CASE("cells: files that a scene names are part of its key, wherever they lie", "[cells]") {
@@ -229,13 +249,33 @@ TEST_CASE("cells: the shipped work files are read", "[cells]") {
   CHECK(drapes.names.at(0) == "path_0000");
 }
 
+TEST_CASE("docs/cells.md has a row for each kind of work file", "[cells]") {
+  const Folder folder("work_kinds");
+  std::string refusal;
+  try {
+    read_cells(fake::write(folder, "a.yaml", "cells: unknown\n"));
+  } catch (const Error& error) {
+    refusal = error.what();
+  }
+  REQUIRE(fake::has(refusal, "one of "));
+  std::istringstream kinds(refusal.substr(refusal.find("one of ") + 7));
+  const std::string page = fake::whole(source_root() / "docs" / "cells.md");
+  int count = 0;
+  for (std::string kind; std::getline(kinds >> std::ws, kind, ','); ++count) {
+    INFO(kind);
+    CHECK(fake::has(page, "| `" + kind + "` | `"));
+  }
+  CHECK(count >= 5);
+}
+
 TEST_CASE("cells: a file that is no work says what would be one", "[cells]") {
   const Folder folder("work_wrong");
   const auto refused = [&](const std::string& text) { read_cells(fake::write(folder, "a.yaml", text)); };
   CHECK_THROWS_WITH(refused(hanging), Contains("is a scene") && Contains("cells: shots"));
   CHECK_THROWS_WITH(refused("samples: {}\n"), Contains("is no list of cells") && Contains("docs/cells.md"));
   CHECK_THROWS_WITH(refused("cells: shot\n"), Contains("did you mean `shots`"));
-  CHECK_THROWS_WITH(refused("cells: [a\n"), Contains("a.yaml") && Contains("cannot be read"));
+  CHECK_THROWS_WITH(refused("cells: [a\n"), Contains("a.yaml:") && Contains("is not YAML"));
+  CHECK_THROWS_WITH(refused("- a\n"), Contains("a.yaml") && Contains("list of `key: value`"));
   CHECK_THROWS_WITH(refused("cells: shots\nshots: []\n"), Contains("at least one shot"));
   CHECK_THROWS_WITH(refused("cells: shots\nshots: [nowhere.yaml]\n"), Contains("a.yaml:2") && Contains("nowhere.yaml"));
   CHECK_THROWS_WITH(refused("cells: stress\nrepeat: 3\n"), Contains("repeats"));

@@ -14,4 +14,9 @@ TEST_CASE("info: says of OpenMP what the program was linked with") {
   CHECK((text.find("SELVEDGE_OPENMP=OFF") == std::string::npos) == linked);
 }
 
+TEST_CASE("info: lists the program's own materials") {
+  const std::string text = info_text();
+  for (const char* name : {"cotton", "denim", "silk"}) CHECK(text.find(name) != std::string::npos);
+}
+
 }  // namespace selvedge::test_info

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
 #include "collision/search/intersections.hpp"
+#include "learned/steppers/learned_state.hpp"
+#include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/host/csv_columns.hpp"
+#include "pipeline/training/simulate_frames.hpp"
 #include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
@@ -32,6 +36,22 @@ TrainingOptions taught_training() {
   options.pool.states = 3;
   options.samples.still_share = 0;
   options.optimiser.warm_up = 4;
+  return options;
+}
+
+// A student that learns from each state four times, from two at once.
+TrainingOptions kept_training() {
+  TrainingOptions options = taught_training();
+  options.architecture = "student";
+  options.width = 8;
+  options.pool.passes = 1;
+  options.pool.behind = BehindNetwork::response;
+  options.optimiser.batch = 2;
+  options.optimiser.decoder_scale = 0;
+  options.samples.simulated_share = 0.5;
+  options.samples.simulated_frames = 2;
+  options.teacher.uses = 4;
+  options.teacher.kept = 5;
   return options;
 }
 
@@ -108,6 +128,86 @@ TEST_CASE("teacher: a training by targets goes on with the same bits when it is 
     for (Trainer* trainer : {whole.get(), resumed.get()}) train_step(*trainer);
   CHECK(weights_of(*whole) == weights_of(*resumed));
   CHECK(whole->teacher->tally().targets > 0);
+}
+
+TEST_CASE("teacher: kept states are learned from again, and a resumed training has the same bits", "[training]") {
+  const Folder folder("teacher_kept");
+  TrainingOptions options = kept_training();
+  auto whole = make_trainer(options);
+  std::vector<double> again;  // steps that take a kept state
+  for (int k = 0; k < 16; ++k) {
+    const long before = whole->counts.again;
+    for (const SampleRecord& sample : train_step(*whole).samples) CHECK(sample.bad == "");
+    again.push_back(static_cast<double>(whole->counts.again - before));
+  }
+  // Two states a step. Four of them are there after two steps; then one step of four takes new ones.
+  CHECK(again == std::vector<double>{0, 0, 2, 2, 0, 2, 2, 2, 0, 2, 2, 2, 0, 2, 2, 2});
+  CHECK(whole->counts.frames == 10);
+  CHECK(whole->taught.all.size() == 5);  // no more are kept
+  for (const auto& kept : whole->taught.all) {
+    CHECK(kept->state.roll.body.empty());
+    CHECK(kept->state.taught.get().x.rows() == kept->state.now.x.rows());
+  }
+
+  write_training_checkpoint(folder.path / "checkpoint.h5", *whole, {"a\n", "b\n", 0, 0, 0});
+  TrainingHistory history;
+  auto resumed = read_training_checkpoint(folder.path / "checkpoint.h5", options, history);
+  CHECK(resumed->counts.again == whole->counts.again);
+  CHECK(resumed->teacher->tally().targets == 0);  // what is kept has its target
+  for (int k = 0; k < 16; ++k)
+    for (Trainer* trainer : {whole.get(), resumed.get()}) train_step(*trainer);
+  CHECK(weights_of(*whole) == weights_of(*resumed));
+}
+
+TEST_CASE("teacher: kept states are drawn at random, and the oldest one goes first", "[training]") {
+  TaughtStates states;
+  states.most = 3;
+  std::vector<const TaughtState*> added;
+  for (int k = 0; k < 5; ++k) {
+    auto one = std::make_unique<TaughtState>();
+    added.push_back(one.get());
+    states.add(std::move(one));
+  }
+  REQUIRE(states.all.size() == 3);
+  RandomStream random{7};
+  std::map<const TaughtState*, int> drawn;
+  for (int k = 0; k < 300; ++k) {
+    const std::vector<TaughtState*> two = states.draw(random, 2);
+    CHECK(two[0] != two[1]);
+    for (const TaughtState* one : two) ++drawn[one];
+  }
+  CHECK(drawn.size() == 3);
+  for (std::size_t k = 2; k < 5; ++k) CHECK(std::abs(drawn[added[k]] - 200) < 40);
+}
+
+TEST_CASE("teacher: a student without an output is the stepper `carried`, until it has learned", "[training]") {
+  auto trainer = make_trainer(kept_training());
+  RollRequest request;
+  request.first_frame = 30;
+  request.frames = 3;
+  request.still = false;
+  request.simulated = 6;  // nothing is tangled there
+  TaughtRoll taught{make_roll(*trainer->maker, request), {}};
+  const Scene& scene = taught.roll.scene->scene;
+  const auto drive_at = [&](std::size_t k) {
+    return drive_to(scene, taught.roll.forces, taught.roll.body[k].cast<double>(), taught.roll.cloth[k].cast<double>());
+  };
+  RollingState state;
+  begin_roll(taught.roll, state);
+  State before, at = solver_frame(state).from;
+  before.x = state.now.previous;
+  before.memory = carried_memory({}, drive_at(0), before.x);
+  at.memory = carried_memory(before, drive_at(1), at.x);
+  const auto carried = make_carried_stepper(scene);
+  for (std::size_t k = 2; k < taught.roll.body.size(); ++k) {
+    State to;
+    REQUIRE(carried->step(at, drive_at(k), learned_dt, to).status == StepStatus::accepted);
+    at = std::move(to);
+  }
+  taught.end = at.x;
+  CHECK(taught_distance(*trainer, taught) < 1e-6);  // [mm]
+  for (int k = 0; k < 3; ++k) train_step(*trainer);
+  CHECK(taught_distance(*trainer, taught) > 1e-3);
 }
 
 TEST_CASE("teacher: targets and potential are mixed, and agree about where the frame ends", "[training]") {
@@ -258,6 +358,12 @@ TEST_CASE("teacher: no term asks for it, and it is not there", "[training]") {
                     Catch::Contains("without their intersecting triangles"));
   CHECK_THROWS_WITH(read_training(file, {"pool.behind=response", "pool.safeguarded=true"}),
                     Catch::Contains("two responses"));
+  CHECK_THROWS_WITH(read_training(file, {"objective.potential.to=1", "teacher.uses=2"}),
+                    Catch::Contains("potential cannot be kept"));
+  CHECK_THROWS_WITH(read_training(file, {targets, "teacher.uses=2", "teacher.kept=2", "optimiser.batch=3"}),
+                    Catch::Contains("more samples than states are kept"));
+  CHECK_THROWS_WITH(trained_architecture(read_training(file, {targets, "teacher.uses=2"})),
+                    Catch::Contains("networks of one pass"));
 }
 
 }  // namespace selvedge::test_teacher

@@ -62,13 +62,13 @@ TEST_CASE("trained on: what is held out is not trained on, and compared on", "[t
   // Weights that say nothing are warned of; so are those that began with such.
   weights.trained_on.clear();
   write_weight_file(request.out / "weights.h5", weights);
-  CHECK(has(comparison("other.yaml", "test").second, "warning: row `own`: weights.h5 does not say what it was"));
+  CHECK(has(comparison("other.yaml", "test").second, "warning: row `own`: weights.h5 has no record of its training"));
   TrainedOn later = on;
   add_earlier("", "earlier", later);
   weights.trained_on = trained_on_json(later);
   write_weight_file(request.out / "weights.h5", weights);
-  CHECK(
-      has(comparison("own.yaml", "test").second, "warning: row `own`: weights.h5 began with weights that do not say"));
+  CHECK(has(comparison("own.yaml", "test").second,
+            "warning: row `own`: weights.h5 began with weights that have no record"));
 }
 
 TEST_CASE("trained on: it is known by content", "[training]") {

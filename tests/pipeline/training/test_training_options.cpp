@@ -6,8 +6,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
-#include "pipeline/training/csv_charts.hpp"
 #include "pipeline/training/objective_options.hpp"
 #include "pipeline/training/training_options.hpp"
 #include "pipeline/training/training_tables.hpp"

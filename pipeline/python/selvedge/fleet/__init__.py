@@ -18,11 +18,11 @@ __all__ = ["FleetResult", "run"]
 
 @dataclasses.dataclass(frozen=True)
 class FleetResult:
-    """What became of the cells of a file. Names stand in the order in which cells ended."""
+    """The results of a run over the cells of a file. Names are in the order in which cells ended."""
 
-    done: list[str]  # their results are there
-    failed: dict[str, str]  # their results are there and say that a row failed; what the program printed
-    missing: dict[str, str]  # no result, and why
+    done: list[str]  # cells with a result
+    failed: dict[str, str]  # cells whose result has a failed row; what the program printed
+    missing: dict[str, str]  # cells without a result, and why
     seconds: float  # by the clock, from the listing to the end of gathering
     gathered: str  # what `selvedge gather` printed
 
@@ -39,7 +39,7 @@ def run(
     shared: bool = False,
     progress: bool = True,
 ) -> FleetResult:
-    """Does all cells of a file into a folder and gathers them, the dearest first, each with one thread.
+    """Does all cells of a file into a folder and gathers them, the longest first, each with one thread.
 
     engine: "local", processes of this machine, or "ray", tasks of a Ray cluster. program: `selvedge`; None: the one
     beside the package in a build folder, or on PATH. workers: cells at a time; None: one a core. retries: how often a
@@ -47,14 +47,17 @@ def run(
     starts one here. shared: the file, all that cells need, and `out` have the same paths on every node; otherwise files
     travel.
 
-    Results that are there and fit are kept. Raises Error where the file, the program or an argument is bad; a cell that
-    is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running and comes out as
-    KeyboardInterrupt; the same call then goes on."""
+    Results of this program and these settings are kept. Raises Error if the file, the program, the folder or an argument
+    is bad; a cell that is refused is in `missing` with its message. Ctrl-C interrupts the cells, leaves nothing running
+    and raises KeyboardInterrupt; the same call then continues."""
     begun = time.monotonic()
     _check(engine, workers, retries)
     listing = list_cells(find_program(program), file)
     folder = pathlib.Path(out).absolute()
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as why:
+        raise Error(f"{folder}: cannot make this folder ({why.strerror})\n  cure: give another out") from why
     said = Progress(listing.cells, {c.name for c in listing.cells if result_folder(folder, c.name).is_dir()}, progress)
     ends = _do_all(listing, _engine(engine, listing, str(folder), workers, address, shared), retries, said)
     by_state = {state: {e.name: e.message for e in ends if e.state == state} for state in ("done", "failed")}

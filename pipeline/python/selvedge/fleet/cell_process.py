@@ -45,8 +45,8 @@ def start_cell(program: str, key: str, file: str, name: str, out: str) -> subpro
 
 
 def _set_up_child():
-    """What the child does before it becomes the program: it hears SIGINT, which workers of Ray and shells in the
-    background hold back, and asks the system to be killed at the death of the thread that started it."""
+    """Run by the child before it becomes the program: unblocks SIGINT, which workers of Ray and background shells
+    block, and lets the system kill it when the thread that started it ends."""
     die = None
     if sys.platform == "linux":
         on_death_of_parent = 1  # PR_SET_PDEATHSIG of sys/prctl.h

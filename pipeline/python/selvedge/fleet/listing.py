@@ -1,4 +1,4 @@
-"""What the program says of a file of cells."""
+"""The list of the cells of a file, as the program prints it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Listing(NamedTuple):
     program: str  # path
     key: str  # the program's hash
     file: str  # absolute path
-    cells: list[Cell]  # the dearest first
+    cells: list[Cell]  # the longest first
 
 
 def find_program(program: str | os.PathLike[str] | None) -> str:
@@ -39,7 +39,7 @@ def find_program(program: str | os.PathLike[str] | None) -> str:
 
 
 def call(program: str, *arguments: str) -> str:
-    """What the program prints. Raises Error, with its message, where it finds its input bad."""
+    """The output of the program. Raises Error, with its message, if its input is bad."""
     ended = subprocess.run([program, *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if ended.returncode not in (0, 1):
         why = ended.stderr.strip() or f"ended with status {ended.returncode}"

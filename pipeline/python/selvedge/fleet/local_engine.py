@@ -36,7 +36,7 @@ class LocalEngine:
             return None
 
     def stop(self) -> None:
-        """Interrupts what runs; nothing runs afterwards."""
+        """Interrupts all cells; none runs afterwards."""
         with self._starting:
             self._stopped = True
             running = list(self._running.values())
@@ -62,5 +62,5 @@ class LocalEngine:
 
 
 def _cores() -> int:
-    """That this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

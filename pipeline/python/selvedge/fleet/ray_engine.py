@@ -56,7 +56,7 @@ class RayEngine:
         return CellEnd(*end)
 
     def stop(self) -> None:
-        """Interrupts what runs; nothing runs afterwards."""
+        """Interrupts all cells; none runs afterwards."""
         running = list(self._running)
         for force in (False, True):
             for reference in running:
@@ -139,7 +139,7 @@ def _connect(ray, address: str | None) -> bool:
 
 
 def _expect_listener(address: str | None) -> None:
-    """Ray itself tries for minutes to reach an address where nobody listens."""
+    """Ends at once for an address without a listener, which Ray tries to reach for minutes."""
     host, colon, port = (address or "").rpartition(":")
     if colon and port.isdigit() and "/" not in host:
         try:

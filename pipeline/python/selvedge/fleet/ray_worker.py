@@ -1,5 +1,4 @@
-"""What a worker of a Ray cluster does. The driver sends these functions along, so that a node needs Ray and no package
-of ours."""
+"""Functions of a worker of a Ray cluster. The driver sends them along, so that a node needs Ray alone."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ from .cell_process import CellEnd, result_folder, start_cell, wait_for_cell
 
 
 class Task(NamedTuple):
-    run: str  # a name that nobody can foresee, for the folder of this run on a node
+    run: str  # an unpredictable name for the folder of this run on a node
     program: str  # where it is on the driver's machine
     program_hash: str  # of its bytes: SHA-256
     program_files: Any  # reference to {path: bytes}, the program last; for nodes that have another one
