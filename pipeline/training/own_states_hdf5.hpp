@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/formats/summed_fields_hdf5.hpp"
+#include "pipeline/run/summed_fields_hdf5.hpp"
 #include "pipeline/training/trainer.hpp"
 
 namespace selvedge {

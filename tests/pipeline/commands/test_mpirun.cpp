@@ -65,6 +65,7 @@ class Running {
  public:
   Running(const fake::Folder& folder, int processes, const std::string& arguments) : folder_(folder) {
     const std::string command = train_command(folder, processes, arguments) + " >stdout 2>stderr </dev/null";
+    std::filesystem::remove(folder.path / "stderr");  // of the run before
     process_ = fork();
     if (process_ != 0) return;
     setpgid(0, 0);
@@ -82,7 +83,9 @@ class Running {
   bool until(const std::function<bool()>& holds, double seconds = 120) const {
     const Clock::time_point begin = Clock::now();
     while (!holds()) {
-      if (seconds_since(begin) > seconds || waitpid(process_, nullptr, WNOHANG | WNOWAIT) != 0) return false;
+      siginfo_t ended{};
+      waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT);
+      if (seconds_since(begin) > seconds || ended.si_pid != 0) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return true;

@@ -1,4 +1,4 @@
-#include "pipeline/formats/summed_fields_hdf5.hpp"
+#include "pipeline/run/summed_fields_hdf5.hpp"
 
 #include <algorithm>
 #include <cmath>
