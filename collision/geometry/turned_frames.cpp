@@ -1,5 +1,7 @@
 #include "collision/geometry/turned_frames.hpp"
 
+#include "learned/graph/area_normal.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -11,12 +13,7 @@ int next_corner(const Surface& surface, int triangle, int vertex) {
 
 // Columns: the normal, an edge perpendicular to it, and their product. False: there is no such frame.
 bool frame_at(const Surface& surface, const Points& x, int vertex, Mat3& frame) {
-  Vec3 normal = Vec3::Zero();
-  for (const int t : surface.triangles_of(vertex)) {
-    const int* v = surface.triangles.data() + 3 * t;
-    const Vec3 a = row(x, v[0]);
-    normal += (row(x, v[1]) - a).cross(row(x, v[2]) - a);
-  }
+  Vec3 normal = area_normal(surface, x, vertex);
   const double size = normal.norm();
   if (!(size > 0)) return false;
   normal /= size;

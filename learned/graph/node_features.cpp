@@ -1,5 +1,6 @@
 #include "learned/graph/node_features.hpp"
 
+#include "learned/graph/area_normal.hpp"
 #include "learned/graph/embedding.hpp"
 #include "learned/graph/node_columns.hpp"
 
@@ -8,12 +9,7 @@ namespace {
 
 // The unit vector along the area-weighted normals of the faces round a vertex; zero where there is none.
 Eigen::RowVector3f vertex_normal(const Surface& surface, const Points& x, int vertex) {
-  Vec3 sum = Vec3::Zero();
-  for (const int t : surface.triangles_of(vertex)) {
-    const int* v = surface.triangles.data() + 3 * t;
-    const Vec3 a = row(x, v[0]);
-    sum += (row(x, v[1]) - a).cross(row(x, v[2]) - a);
-  }
+  const Vec3 sum = area_normal(surface, x, vertex);
   const double length = sum.norm();
   return (length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero())).transpose().cast<float>();
 }

@@ -401,6 +401,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   }
   StepReport report;
   report.by = traits_.name;
+  report.collision.pairs_before = from.clean ? 0 : -1;
   StepWork work(from, drive, extras, report);
   const SearchTally before = contact_.search.tally();
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v, step_history(from)};

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "pipeline/training/running_mark.hpp"
+#include "pipeline/run/running_mark.hpp"
 
 namespace selvedge {
 

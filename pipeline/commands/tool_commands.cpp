@@ -236,7 +236,7 @@ RunCommand export_command(CLI::App& command) {
   command.add_flag("--obstacles", request->obstacles, "export the obstacles too");
   command.add_option("--onto", request->onto,
                      "mesh of your own at the rest shape of the cloth, which moves it (.obj, .ply)");
-  command.add_option("--onto-unit", request->onto_unit, "unit of that mesh: m, dm, cm, mm");
+  command.add_option("--onto-unit", request->onto_unit, "unit of that mesh: m, dm, cm, mm, in");
   command.add_option("--cloth", request->cloth, "name of the cloth that moves the mesh; default: all cloths");
   return [request](bool json) {
     Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);

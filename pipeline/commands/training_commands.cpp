@@ -8,8 +8,8 @@
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/processes/mpi_processes.hpp"
 #include "pipeline/processes/together.hpp"
+#include "pipeline/run/running_mark.hpp"
 #include "pipeline/teach/teach_carried.hpp"
-#include "pipeline/training/running_mark.hpp"
 #include "pipeline/training/train.hpp"
 
 namespace selvedge {

@@ -6,7 +6,14 @@
 
 namespace selvedge {
 
-ExportMaterials export_materials(const std::vector<AnimatedSurface>& surfaces) {
+std::string unused_name(const std::string& name, const std::vector<LookMaterial>& materials) {
+  std::string unused = name;
+  for (int k = 1; std::ranges::find(materials, unused, &LookMaterial::name) != materials.end(); ++k)
+    unused = fmt::format("{}_{}", name, k);
+  return unused;
+}
+
+ExportMaterials export_materials(std::span<const AnimatedSurface> surfaces) {
   ExportMaterials materials;
   std::vector<LookMaterial> given;  // as the files have them
   for (const AnimatedSurface& surface : surfaces) {
@@ -17,8 +24,7 @@ ExportMaterials export_materials(const std::vector<AnimatedSurface>& surfaces) {
       if (known != given.end()) continue;
       given.push_back(material);
       LookMaterial named = material;
-      for (int k = 1; std::ranges::find(materials.all, named.name, &LookMaterial::name) != materials.all.end(); ++k)
-        named.name = fmt::format("{}_{}", material.name, k);
+      named.name = unused_name(material.name, materials.all);
       materials.all.push_back(std::move(named));
     }
   }

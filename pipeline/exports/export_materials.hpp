@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "pipeline/exports/animated_surfaces.hpp"
 
 namespace selvedge {
@@ -10,6 +12,9 @@ struct ExportMaterials {
   std::vector<std::vector<int>> of;  // of each surface: the numbers of its look's materials
 };
 
-ExportMaterials export_materials(const std::vector<AnimatedSurface>&);
+ExportMaterials export_materials(std::span<const AnimatedSurface>);
+
+// The name, or where a material has it the name with a number.
+std::string unused_name(const std::string& name, const std::vector<LookMaterial>&);
 
 }  // namespace selvedge

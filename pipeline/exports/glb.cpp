@@ -259,6 +259,41 @@ void write_chunks(const std::filesystem::path& path, std::string text, const std
   file.keep();
 }
 
+// A mesh and a node of every surface, and the materials that they have.
+struct SurfaceTables {
+  Json meshes = Json::array(), nodes = Json::array(), materials = Json::array();
+  Json more = Json::object();  // images and textures
+  std::vector<int> roots, moving;
+};
+
+SurfaceTables put_surfaces(Chunk& chunk, const AnimatedSurfaces& run, const std::vector<Ranges>& ranges,
+                           const std::vector<SplitVertices>& splits, std::vector<Track>& tracks) {
+  SurfaceTables tables;
+  const ExportMaterials looks = export_materials(run.surfaces);
+  put_materials(looks, tables.materials, tables.more);
+  for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
+    const int number = static_cast<int>(s);
+    const Eigen::RowVector3d& o = ranges[s].origin;
+    if (tracks[s].accessors.size() > 1) tables.moving.push_back(number);
+    int by_default = -1;
+    const auto material = [&](int of_look) {
+      if (of_look >= 0) return looks.of[s][static_cast<std::size_t>(of_look)];
+      if (by_default < 0) {
+        by_default = static_cast<int>(tables.materials.size());
+        tables.materials.push_back(material_of(run.surfaces[s]));
+      }
+      return by_default;
+    };
+    tables.meshes.push_back(mesh_of(chunk, run.surfaces[s], splits[s], tracks[s], material));
+    tables.nodes.push_back({{"name", run.surfaces[s].name},
+                            {"mesh", number},
+                            {"translation", {o[0], o[1], o[2]}},
+                            {"scale", {ranges[s].step, ranges[s].step, ranges[s].step}}});
+    tables.roots.push_back(number);
+  }
+  return tables;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& given, const ExportRequest& request) {
@@ -269,42 +304,18 @@ std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& given, con
   const std::vector<Ranges> ranges = ranges_of(run);
   std::vector<Track> tracks = tracks_of(run, ranges, splits);
   Chunk chunk;
-  Json meshes = Json::array(), nodes = Json::array(), materials = Json::array(), roots = Json::array();
-  std::vector<int> moving;
-  Json tables = Json::object();
-  const ExportMaterials looks = export_materials(run.surfaces);
-  put_materials(looks, materials, tables);
-  for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
-    const int number = static_cast<int>(s);
-    const Eigen::RowVector3d& o = ranges[s].origin;
-    if (tracks[s].accessors.size() > 1) moving.push_back(number);
-    int by_default = -1;
-    const auto material = [&](int of_look) {
-      if (of_look >= 0) return looks.of[s][static_cast<std::size_t>(of_look)];
-      if (by_default < 0) {
-        by_default = static_cast<int>(materials.size());
-        materials.push_back(material_of(run.surfaces[s]));
-      }
-      return by_default;
-    };
-    meshes.push_back(mesh_of(chunk, run.surfaces[s], splits[s], tracks[s], material));
-    nodes.push_back({{"name", run.surfaces[s].name},
-                     {"mesh", number},
-                     {"translation", {o[0], o[1], o[2]}},
-                     {"scale", {ranges[s].step, ranges[s].step, ranges[s].step}}});
-    roots.push_back(number);
-  }
-  const Json extensions = Json::array({"KHR_mesh_quantization"}), scene = {{"nodes", roots}};
+  const SurfaceTables tables = put_surfaces(chunk, run, ranges, splits, tracks);
+  const Json extensions = Json::array({"KHR_mesh_quantization"}), scene = {{"nodes", tables.roots}};
   Json all = {{"asset", {{"version", "2.0"}, {"generator", "selvedge"}}},
               {"extensionsUsed", extensions},
               {"extensionsRequired", extensions},
               {"scene", 0},
               {"scenes", Json::array({scene})},
-              {"nodes", nodes},
-              {"meshes", meshes},
-              {"materials", materials}};
-  all.update(tables);
-  if (!moving.empty()) all["animations"] = Json::array({animation_of(chunk, run, moving)});
+              {"nodes", tables.nodes},
+              {"meshes", tables.meshes},
+              {"materials", tables.materials}};
+  all.update(tables.more);
+  if (!tables.moving.empty()) all["animations"] = Json::array({animation_of(chunk, run, tables.moving)});
   all["bufferViews"] = chunk.views;
   all["accessors"] = chunk.accessors;
   const Json buffer = {{"byteLength", chunk.bytes.size()}};

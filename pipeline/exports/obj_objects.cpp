@@ -12,10 +12,6 @@
 namespace selvedge {
 namespace {
 
-ExportMaterials materials_of(std::span<const AnimatedSurface> surfaces) {
-  return export_materials({surfaces.begin(), surfaces.end()});
-}
-
 // A text in the making: rows that it has so far, by which the next surface's indices are shifted, and the lines that
 // hold for the next face.
 struct ObjText {
@@ -23,6 +19,7 @@ struct ObjText {
   Eigen::Index vertices = 1, uvs = 1, normals = 1;
   LookPart part;
   std::string material;
+  std::string no_material = "default";  // of faces without: OBJ has no word that ends a material
 
   template <class... Values>
   void add(fmt::format_string<Values...> form, Values&&... values) {
@@ -31,12 +28,12 @@ struct ObjText {
   void add_points(const char* word, const Points& x) {
     for (const auto& p : x.rowwise()) add("{} {} {} {}\n", word, p[0], p[1], p[2]);
   }
-  // OBJ has no words that end a group or a material: `default` is the name that it has for those of no other.
+  // Nor has it a word that ends a group, but the name `default` for what is in no other.
   void begin_face(const LookPart& its, const std::string& its_material) {
     if (its.object != part.object) add("o {}\n", its.object);
     if (its.groups != part.groups) add("g {}\n", its.groups.empty() ? "default" : its.groups);
     if (its.smoothing != part.smoothing) add("s {}\n", its.smoothing.empty() ? "off" : its.smoothing);
-    if (its_material != material) add("usemtl {}\n", its_material.empty() ? "default" : its_material);
+    if (its_material != material) add("usemtl {}\n", its_material.empty() ? no_material : its_material);
     part = its;
     material = its_material;
   }
@@ -98,8 +95,9 @@ void add_surface(const AnimatedSurface& surface, const PointsF& x, const std::ve
 
 std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<const PointsF> x,
                          const std::string& material_file) {
-  const ExportMaterials materials = materials_of(surfaces);
+  const ExportMaterials materials = export_materials(surfaces);
   ObjText obj;
+  obj.no_material = unused_name(obj.no_material, materials.all);
   if (!material_file.empty()) obj.add("mtllib {}\n", material_file);
   std::set<std::string> taken;  // names of objects of earlier surfaces
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -118,7 +116,7 @@ std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<co
 }
 
 std::string objects_materials(std::span<const AnimatedSurface> surfaces) {
-  return mtl_text(materials_of(surfaces).all);
+  return mtl_text(export_materials(surfaces).all);
 }
 
 }  // namespace selvedge

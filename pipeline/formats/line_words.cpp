@@ -3,14 +3,18 @@
 #include <algorithm>
 
 namespace selvedge {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+}  // namespace
 
 std::vector<std::string_view> split_words(std::string_view line) {
   std::vector<std::string_view> words;
-  const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; };
   for (std::size_t i = 0; i < line.size();) {
-    while (i < line.size() && space(line[i])) ++i;
+    while (i < line.size() && is_blank(line[i])) ++i;
     const std::size_t begin = i;
-    while (i < line.size() && !space(line[i])) ++i;
+    while (i < line.size() && !is_blank(line[i])) ++i;
     if (i > begin) words.push_back(line.substr(begin, i - begin));
   }
   return words;
@@ -20,6 +24,14 @@ std::string joined_from(const std::vector<std::string_view>& words, std::size_t 
   std::string all;
   for (std::size_t k = first; k < words.size(); ++k) all += (k > first ? " " : "") + std::string(words[k]);
   return all;
+}
+
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool number = i + 1 < line.size() && line[i + 1] >= '0' && line[i + 1] <= '9';
+    if (line[i] == '#' && (i == 0 || (is_blank(line[i - 1]) && !number))) return line.substr(0, i);
+  }
+  return line;
 }
 
 std::string_view take_line(std::string_view& text) {

@@ -25,12 +25,13 @@ struct Mesh {
   Points x;
   Triangles triangles;  // of the polygons (polygon.hpp); degenerate and duplicate ones removed, counted in warnings
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> uv;  // texture vertices (OBJ vt), may be empty
-  Triangles uv_triangles;                                        // corner -> row of uv; empty where a face has none
+  Triangles uv_triangles;                                        // corner -> row of uv, -1 for none; empty: no uv
   NamedVertices groups;                                          // OBJ g / o, meshes of glTF
   std::vector<int> corners, corner_begin;  // vertices of the polygons as read, and where each begins; empty: not read
   std::vector<int> welded;  // of each vertex as read: its number after coincident ones were joined; empty: not joined
   Look look;                // what the file says beyond that
-  std::vector<std::pair<std::filesystem::path, std::string>> material_files;  // OBJ mtllib: the mesh's folder, the name
+  std::vector<std::pair<std::filesystem::path, std::string>>
+      material_files;  // OBJ mtllib: the mesh's folder, its words
   std::vector<std::string> warnings;
 };
 

@@ -39,12 +39,23 @@ std::string texture_of(const std::vector<std::string_view>& words) {
   return file.starts_with('/') || drive ? file.substr(file.rfind('/') + 1) : file;
 }
 
+// The files that a line `mtllib` names: one with blanks in its name if there is such a one, else several.
+std::vector<std::string> mtl_files(const std::filesystem::path& folder, const std::string& line) {
+  const auto is_there = [&](const std::string& name) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(folder / name, ignored);
+  };
+  std::vector<std::string> names;
+  for (const std::string_view word : split_words(line)) names.emplace_back(word);
+  return is_there(line) || std::ranges::none_of(names, is_there) ? std::vector{line} : names;
+}
+
 }  // namespace
 
 void parse_mtl(std::string_view text, std::vector<LookMaterial>& materials) {
   auto open = materials.end();
   while (!text.empty()) {
-    const std::vector<std::string_view> words = split_words(take_line(text));
+    const std::vector<std::string_view> words = split_words(without_comment(take_line(text)));
     if (words.size() < 2) continue;
     if (words[0] == "newmtl")
       open = std::ranges::find(materials, joined_from(words, 1), &LookMaterial::name);
@@ -57,17 +68,18 @@ void parse_mtl(std::string_view text, std::vector<LookMaterial>& materials) {
 
 void read_materials(Mesh& mesh, MissingMtl missing) {
   if (mesh.look.materials.empty()) return;
-  for (const auto& [folder, name] : mesh.material_files) {
-    try {
-      parse_mtl(read_text_file(path_below(folder, name, folder.string()), "material"), mesh.look.materials);
-    } catch (const Error&) {
-      if (missing == MissingMtl::ignore) continue;
-      mesh.warnings.push_back(
-          fmt::format("the material file `{}` cannot be read from the mesh's folder {}: its colours and textures are "
-                      "left out",
-                      name, folder.string()));
+  for (const auto& [folder, line] : mesh.material_files)
+    for (const std::string& name : mtl_files(folder, line)) {
+      try {
+        parse_mtl(read_text_file(path_below(folder, name, folder.string()), "material"), mesh.look.materials);
+      } catch (const Error&) {
+        if (missing == MissingMtl::ignore) continue;
+        mesh.warnings.push_back(
+            fmt::format("the material file `{}` cannot be read from the mesh's folder {}: its colours and textures "
+                        "are left out",
+                        name, folder.string()));
+      }
     }
-  }
 }
 
 std::string mtl_text(const std::vector<LookMaterial>& materials) {

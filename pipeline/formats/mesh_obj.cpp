@@ -33,7 +33,9 @@ template <class Value>
 struct Numbered {
   std::map<Value, int> numbers;
 
-  int operator()(const Value& value) { return numbers.emplace(value, static_cast<int>(numbers.size())).first->second; }
+  int operator()(const Value& value) {
+    return numbers.try_emplace(value, static_cast<int>(numbers.size())).first->second;
+  }
   std::vector<Value> values() const {
     std::vector<Value> all(numbers.size());
     for (const auto& [value, number] : numbers) all[static_cast<std::size_t>(number)] = value;
@@ -145,8 +147,16 @@ void note_unknown(Parser& p, std::string_view word) {
   if (p.unknown.size() < most_words) ++p.unknown[std::string(word.substr(0, most_length))];
 }
 
+// The words of a line before its comment. Names may have a `#` in them.
+std::vector<std::string_view> obj_words(std::string_view line) {
+  constexpr std::array<std::string_view, 4> naming = {"o", "g", "usemtl", "mtllib"};
+  std::vector<std::string_view> words = split_words(without_comment(line));
+  const bool names = !words.empty() && std::ranges::find(naming, words[0]) != naming.end();
+  return names ? words : split_words(line.substr(0, line.find('#')));
+}
+
 void read_line(Parser& p, std::string_view text) {
-  const std::vector<std::string_view> words = split_words(text.substr(0, text.find('#')));
+  const std::vector<std::string_view> words = obj_words(text);
   if (words.empty()) return;
   if (words[0] == "v") {
     read_coordinates(p, words, 3, p.x);
@@ -181,11 +191,8 @@ void read_lines(Parser& p, std::string_view text) {
   std::string continued;
   int number = 0;
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view one = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::string_view one = take_line(text);
     ++number;
-    if (!one.empty() && one.back() == '\r') one.remove_suffix(1);
     if (continued.empty()) p.line = number;
     if (!one.empty() && one.back() == '\\') {
       continued += std::string(one.substr(0, one.size() - 1)) + " ";
@@ -233,7 +240,9 @@ std::vector<int> normals_of_corners(const Parser& p, Mesh& mesh) {
     of_corner.push_back(there ? numbered(p.normals[static_cast<std::size_t>(corner.normal)]) : -1);
   }
   if (missing > 0)
-    mesh.warnings.push_back(fmt::format("{}: {} corners of faces name normals that are not there", p.name, missing));
+    mesh.warnings.push_back(fmt::format(
+        "{}: {} not there", p.name,
+        counted(missing, "corner of a face names a normal that is", "corners of faces name normals that are")));
   if (numbered.numbers.empty()) of_corner.clear();
   return of_corner;
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double beyond_box = 0.25;     // beyond the body's box, of its diagonal
 constexpr double least_extent = 0.1;    // extent of a garment, of that diagonal
 constexpr double clearly_nearer = 1.5;  // how much farther off the second best is at least
-constexpr double deep = 0.05;           // inside the body, of the garment's extent
+constexpr double deep = 0.01;           // inside the body, of the garment's extent
 constexpr Eigen::Index most_sampled = 256;
 
 double extent_of(const Points& x) { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }

@@ -23,7 +23,7 @@ std::string frame_text(const MeshFrame&);             // "cm, z up"
 struct FrameFit {
   MeshFrame frame;
   // Mean distance of vertices from the body over the garment's own extent, and the share deeper inside of it than a
-  // twentieth of that: less is a garment that clips through the body where it is meant to lie.
+  // hundredth of that: less is a garment that clips through the body where it is meant to lie.
   double off = 0;
 };
 

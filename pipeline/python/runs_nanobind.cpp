@@ -13,10 +13,10 @@
 #include "pipeline/python/fields_nanobind.hpp"
 #include "pipeline/python/python_stop_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/run/running_mark.hpp"
 #include "pipeline/tools/export.hpp"
 #include "pipeline/tools/fit_report.hpp"
 #include "pipeline/tools/plan.hpp"
-#include "pipeline/training/running_mark.hpp"
 #include "pipeline/view/view.hpp"
 
 namespace selvedge {

@@ -4,6 +4,7 @@ namespace selvedge {
 
 using namespace report_table;
 
+// Trajectories hold the numbers, so that a reason which no step has any more, `overstretched`, keeps its own.
 const std::vector<std::string>& reason_names() {
   static const std::vector<std::string> names{"none",        "not_converged", "not_finite", "penetrating",
                                               "energy_gain", "overstretched", "stopped",    "too_many_pairs"};
@@ -97,7 +98,7 @@ const BoundFields<CollisionReport>& collision_fields() {
       field("obstacle_lag", &C::obstacle_lag, "m", "largest distance of an obstacle from its wanted position",
             {{"max_obstacle_lag", Over::largest}}),
       field("pairs_before", &C::pairs_before, "",
-            "intersecting pairs at the start that the stepper found; -1 if it did not look"),
+            "intersecting pairs at the start that the stepper found; -1 if it did not count them"),
       field("pairs_after", &C::pairs_after, "", "the same at the end"),
       field("pairs_wanted", &C::pairs_wanted, "",
             "intersecting pairs at the end, with obstacles at their wanted positions",

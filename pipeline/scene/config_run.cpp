@@ -94,21 +94,19 @@ const Options<HybridOptions>& hybrid_options() {
       "hybrid",
       "The network of `learned` proposes a step, and a guard judges it. Where the guard refuses, the conventional "
       "stepper takes the step from the same state.",
-      {choice(
-           "mode", &O::mode,
-           {{"fallback", HybridMode::fallback},
-            {"corrected", HybridMode::corrected},
-            {"refined", HybridMode::refined},
-            {"gated", HybridMode::gated},
-            {"after_k", HybridMode::after_k},
-            {"response", HybridMode::response},
-            {"rough", HybridMode::rough}},
-           "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `refined`: as "
-           "the first guess of a conventional solve. `gated`: as `corrected`, after a line search on the step's "
-           "potential. `after_k`: as `gated`, with a line search that starts after k Newton iterations. `response`: "
-           "after "
-           "the contact response, judged by its motion, the audits and the energy alone. `rough`: as the first guess "
-           "of one rough solve, judged in the same way."),
+      {choice("mode", &O::mode,
+              {{"fallback", HybridMode::fallback},
+               {"corrected", HybridMode::corrected},
+               {"refined", HybridMode::refined},
+               {"gated", HybridMode::gated},
+               {"after_k", HybridMode::after_k},
+               {"response", HybridMode::response},
+               {"rough", HybridMode::rough}},
+              "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `refined`: as "
+              "the first guess of a conventional solve. `gated`: as `corrected`, after a line search on the step's "
+              "potential. `after_k`: as `gated`, with a line search that starts after k Newton iterations. "
+              "`response`: after the contact response, judged by its motion, the audits and the energy alone. "
+              "`rough`: as the first guess of one rough solve, judged in the same way."),
        or_word(integer("newton", &O::newton, at_least_one,
                        "Number k of Newton iterations of `after_k`, or the largest number in a solve of `refined`. "
                        "`auto`: 2 for `after_k`, `max_newton` for `refined`."),

@@ -130,14 +130,22 @@ Scene rest_scene(int vertex_count, const Triangles& triangles, std::vector<RestT
   return scene;
 }
 
+// The triangles of a cloth by the numbers of its own vertices, without those that files of other programs join to
+// another cloth.
+Triangles own_triangles(const TrajectoryInfo& info, std::size_t cloth) {
+  const int first = info.cloth_first_vertex[cloth], end = info.cloth_first_vertex[cloth + 1];
+  std::vector<int> own;
+  for (int t = info.cloth_first_triangle[cloth]; t < info.cloth_first_triangle[cloth + 1]; ++t)
+    if (info.triangles.row(t).minCoeff() >= first && info.triangles.row(t).maxCoeff() < end) own.push_back(t);
+  return info.triangles(own, Eigen::all).array() - first;
+}
+
 // Each cloth by itself: others may lie at the same place.
 void warn_of_seams(const TrajectoryInfo& info, CheckReport& report) {
   for (std::size_t c = 0; c < info.cloth_names.size(); ++c) {
-    const int vertex = info.cloth_first_vertex[c], triangle = info.cloth_first_triangle[c];
-    const Triangles triangles =
-        info.triangles.middleRows(triangle, info.cloth_first_triangle[c + 1] - triangle).array() - vertex;
+    const int vertex = info.cloth_first_vertex[c];
     const Points rest = info.rest.middleRows(vertex, info.cloth_first_vertex[c + 1] - vertex);
-    if (const int joined = rest.rows() > 0 ? weldable(rest, triangles).joined : 0; joined > 0)
+    if (const int joined = rest.rows() > 0 ? weldable(rest, own_triangles(info, c)).joined : 0; joined > 0)
       report.warnings.push_back("cloth `" + info.cloth_names[c] + "`: " + unwelded_text(joined, weld_keys_text));
   }
 }

@@ -129,11 +129,16 @@ function markMeshes(geometry, most) {
 }
 
 // Mean edge of the rest shape, as if its triangles were equilateral; 1 / (2 area)^2 is the determinant of the metric.
+// Triangles of which rounding leaves no area do not count.
 function edgeLength(metric) {
-  let area = 0;
-  for (let i = 0; i < metric.length; i += 3)
-    area += 0.5 / Math.sqrt(metric[i] * metric[i + 2] - metric[i + 1] * metric[i + 1]);
-  return Math.sqrt(area / Math.max(1, metric.length / 3) * 4 / Math.sqrt(3));
+  let area = 0, count = 0;
+  for (let i = 0; i < metric.length; i += 3) {
+    const determinant = metric[i] * metric[i + 2] - metric[i + 1] * metric[i + 1];
+    if (!(determinant > 0)) continue;
+    area += 0.5 / Math.sqrt(determinant);
+    ++count;
+  }
+  return Math.sqrt(area / Math.max(1, count) * 4 / Math.sqrt(3));
 }
 
 // Round heads that are a third of an edge wide, so that cloth worn over a pinned waist covers them.

@@ -103,7 +103,7 @@ Steps steps_of(PackedPositions& packed, const PointsF& x) {
 }  // namespace
 
 double grid_step(const PointsF& x) {
-  constexpr double coarsest = 1e-4, steps_a_side = 32768;
+  constexpr double coarsest = 1e-4, finest = 1e-7, steps_a_side = 32768, of_floats = 0x1p-24;
   Eigen::RowVector3d low = Eigen::RowVector3d::Constant(INFINITY), high = -low;
   for (Eigen::Index v = 0; v < x.rows(); ++v) {
     if (!x.row(v).allFinite()) continue;
@@ -111,7 +111,9 @@ double grid_step(const PointsF& x) {
     high = high.cwiseMax(x.row(v).cast<double>());
   }
   const double side = low.allFinite() ? (high - low).maxCoeff() : 0;
-  return side > 0 ? std::min(coarsest, side / steps_a_side) : coarsest;
+  if (!(side > 0)) return coarsest;
+  const double rounding = of_floats * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  return std::min(coarsest, std::max({side / steps_a_side, finest, rounding}));
 }
 
 void append(PackedPositions& packed, const PointsF& x) {

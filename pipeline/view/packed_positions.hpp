@@ -26,7 +26,8 @@ struct PackedPositions {
   int open_count = 0;
 };
 
-// A step of at most 0.1 mm, and of a 32,768th of the longest side of the box round these positions [m].
+// A step of at most 0.1 mm [m]. A box round these positions whose longest side is below 3.3 m has a 32,768th of that,
+// but no less than 0.1 um, with which a surface may move 100 m, and no less than floats are rounded by where it is.
 double grid_step(const PointsF&);
 
 // Adds a frame; all frames have as many vertices. The code is whole at any time once `closed` was called on a copy.

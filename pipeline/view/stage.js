@@ -33,14 +33,15 @@ function framedPoints(run, bodies, near, path) {
   return points;
 }
 
-// Places of a moving thing by frame, each the mean of those less than half a second before and after.
+// Places of a moving thing by frame, each the mean of those less than half a second before and after. Times ascend.
 function smoothed(places, times) {
+  let first = 0;
   return places.map((_, k) => {
+    while (times[k] - times[first] >= 0.5) ++first;
     const mean = new THREE.Vector3();
-    let count = 0;
-    for (let i = 0; i < places.length; ++i)
-      if (Math.abs(times[i] - times[k]) < 0.5) mean.add(places[i]), ++count;
-    return mean.divideScalar(Math.max(1, count));
+    let i = first;
+    for (; i < places.length && times[i] - times[k] < 0.5; ++i) mean.add(places[i]);
+    return mean.divideScalar(i - first);
   });
 }
 
@@ -54,14 +55,16 @@ function framing(runs) {
   const bodies = run.obstacles.filter((body) => !body.backdrop && boundsOf(body.boxes).intersectsBox(near));
   const boxAt = (k) => bodies.reduce(
       (box, body) => box.union(boundsOf([body.boxes[body.moving ? k : 0]]).intersect(near)), boundsOf([run.boxes[k]]));
-  const boxes = run.boxes.map((_, k) => boxAt(k)), all = boxes.reduce((sum, box) => sum.union(box), new THREE.Box3());
+  const boxes = run.boxes.map((_, k) => boxAt(k));
+  boxes.forEach((box, k) => k && box.isEmpty() && box.copy(boxes[k - 1]));  // nothing is there: the camera waits
+  const all = boxes.reduce((sum, box) => sum.union(box), new THREE.Box3());
   const level = boxes.map((box) => box.getCenter(new THREE.Vector3()).sub(boxes[0].getCenter(new THREE.Vector3())).setY(0));
   const path = smoothed(level, run.drawn.map((f) => run.series.time[f]));
   const local = boxes.reduce((sum, box, k) => sum.union(box.clone().translate(path[k].clone().negate())), new THREE.Box3());
   const follows = sizeOf(all) > 1.3 * sizeOf(local), box = follows ? local : all;
   const sphere = box.getBoundingSphere(new THREE.Sphere()), radius = Math.max(sphere.radius, 1e-3);
   const solid = boundsOf(run.obstacles.flatMap((body) => body.boxes));
-  const lowest = Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
+  const lowest = cloth.isEmpty() ? 0 : Math.min(cloth.min.y, solid.isEmpty() ? Infinity : solid.min.y);
   return {
     centre: sphere.center,
     radius,

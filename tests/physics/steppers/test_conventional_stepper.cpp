@@ -59,6 +59,17 @@ TEST_CASE("conventional stepper: free fall is implicit Euler's, to rounding", "[
   CHECK(state.time == Approx(frames / 30.0));
 }
 
+TEST_CASE("conventional stepper: a clean start has no pairs, and those of another are not counted",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(3, 0.3, 0));
+  auto stepper = make_conventional_stepper(w.scene, {});
+  State to;
+  for (const bool clean : {true, false}) {
+    w.state.clean = clean;
+    CHECK(stepper->step(w.state, w.drive, 1.0 / 30, to).collision.pairs_before == (clean ? 0 : -1));
+  }
+}
+
 TEST_CASE("conventional stepper: a sheet folds over a peak and stays clean", "[conventional_stepper]") {
   const World w = folding_world(14);
   const Run r = run(w, 45);

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "learned/network/weights_hdf5.hpp"
-#include "pipeline/training/csv_charts.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/program.hpp"
 #include "tests/source_root.hpp"

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
@@ -65,12 +67,31 @@ TEST_CASE("wrong normals and missing material files do not keep a mesh from bein
                    "vn 0 0 1\nf 1//2 2//x 3//9\n");
   CHECK(mesh.look.corner_normal == std::vector<int>{0, -1, -1});
   REQUIRE(mesh.warnings.size() == 1);
-  CHECK_THAT(mesh.warnings[0], Contains("1 corners of faces name normals that are not there"));
+  CHECK_THAT(mesh.warnings[0], Contains("1 corner of a face names a normal that is not there"));
   read_materials(mesh);
   REQUIRE(mesh.warnings.size() == 3);
   CHECK_THAT(mesh.warnings[1], Contains("gone.mtl"));
   CHECK_THAT(mesh.warnings[2], Contains("../up.mtl"));
   CHECK(mesh.look.materials == std::vector<LookMaterial>{{"red"}});
+}
+
+TEST_CASE("names may have a # and blanks in them, in OBJ as in MTL, and a line may name several files", "[look]") {
+  const Folder folder("look_names");
+  fake::write(folder, "my mats.mtl", "newmtl Red#1\nKd 1 0 0\nnewmtl Material #25\nKd 0.5 # grey\n");
+  fake::write(folder, "a.mtl", "newmtl Material #26\nKd 0 1 0\n");
+  fake::write(folder, "b.mtl", "newmtl blue # of the sea\nmap_Kd sea.png # far away\n");
+  Mesh mesh = read(folder,
+                   "mtllib my mats.mtl\nmtllib a.mtl b.mtl # two\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0#no\n"
+                   "o c#1\nusemtl Red#1\nf 1 2 3#no\nusemtl Material #25\nf 2 3 1\nusemtl Material #26 # green\n"
+                   "f 3 1 2\nusemtl blue\nf 1 2 3\n");
+  read_materials(mesh);
+  CHECK(mesh.look.materials == std::vector<LookMaterial>{{"Red#1", Vec3(1, 0, 0)},
+                                                         {"Material #25", Vec3(0.5, 0.5, 0.5)},
+                                                         {"Material #26", Vec3(0, 1, 0)},
+                                                         {"blue", {}, "sea.png"}});
+  CHECK(mesh.look.parts == std::vector<LookPart>{{"c#1"}});
+  CHECK_THAT(mesh.warnings.back(), Contains("gone.mtl"));
+  CHECK(std::ranges::count_if(mesh.warnings, [](const std::string& w) { return w.find(".mtl") < w.size(); }) == 1);
 }
 
 TEST_CASE("a welded mesh keeps the vertices of its file in the look", "[look]") {

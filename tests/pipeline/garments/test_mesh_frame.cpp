@@ -19,11 +19,19 @@ Points in_file(const Points& x, const MeshFrame& frame) {
   return turned;
 }
 
+// Nearly as wide as it is long, so that most of it is as near to the body with the other axis up.
+fake::Piece flared_skirt(const BodyModel& body) {
+  fake::Piece skirt = fake::skirt(body, -0.46, 0.11, 0.02, 40, 16);
+  for (Eigen::Index v = 0; v < skirt.x.rows(); ++v)
+    for (const int k : {0, 2}) skirt.x(v, k) *= 1 + (k == 0 ? 2.5 : 3.5) * (0.11 - skirt.x(v, 1));
+  return skirt;
+}
+
 }  // namespace
 
 TEST_CASE("unit and axis of a garment's file are known from where it lies on the body", "[mesh_frame]") {
   const BodyModel& body = fake::mannequin();
-  const std::vector<fake::Piece> pieces{fake::skirt(body, -0.35, 0.1, 0.02, 40, 14),
+  const std::vector<fake::Piece> pieces{fake::skirt(body, -0.35, 0.1, 0.02, 40, 14), flared_skirt(body),
                                         fake::trunk(body, -0.05, 0.3, 0.02),
                                         fake::piece_of(
                                             body, [](const Vec3& p) { return p.y() > -0.05 && p.y() < 0.5; }, 0.02)};

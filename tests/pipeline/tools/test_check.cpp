@@ -53,6 +53,24 @@ TEST_CASE("seams that are not welded are told with the number that welding joins
   CHECK(mesh.warnings[0].find("joins 2 vertices") != std::string::npos);
 }
 
+TEST_CASE("cloths of other programs may have triangles in common with the next cloth") {
+  const fake::Folder folder("check_common");
+  const Scene scene = fake::scene();
+  TrajectoryInfo info = trajectory_info(scene, "", "conventional", 30);
+  info.cloth_names = {"upper", "lower"};
+  info.cloth_first_vertex = {0, 10, 25};
+  info.cloth_first_triangle = {0, 16, 32};  // of which the last eight of `upper` reach into `lower`
+  info.rest.row(9) = info.rest.row(0);      // in no triangle of `upper` alone with an edge in common
+  {
+    TrajectoryWriter writer(folder.path / "run.h5", info);
+    writer.append(fake::frame(scene, 0));
+    writer.close();
+  }
+  const CheckReport report = check({folder.path / "run.h5", {}, {}});
+  CHECK(report.frames() == 1);
+  CHECK(report.warnings.empty());
+}
+
 TEST_CASE("the folder of a run is checked as its trajectory is") {
   const fake::Folder folder("check_folder");
   fake::FallingStepper stepper;

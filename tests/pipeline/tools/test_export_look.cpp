@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/exports/obj_objects.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
@@ -102,6 +103,17 @@ TEST_CASE("OBJ: a garment comes out as its file had it, beside other cloths", "[
   CHECK(look.parts[static_cast<std::size_t>(look.face_part[3])].object == "sheet");
   CHECK(fake::has(fake::whole(files[1]), "\ng left\nusemtl red cloth\nf 2/1/1 4/2/2 5/3/3 3/4/4\n"));
   CHECK(fake::whole(files[1]).starts_with("mtllib cloth.mtl\no strip\nv 2 0 0\n"));
+}
+
+TEST_CASE("OBJ: faces without a material do not get one that is named `default`", "[export][look]") {
+  AnimatedSurface surface{"sheet", Triangles(2, 3), 3};
+  surface.look = plain_look(3, {0, 1, 2, 2, 1, 0}, {0, 3});
+  surface.look.materials = {{"default", Vec3(1, 0, 0)}};
+  surface.look.face_material = {0, -1};
+  const PointsF x = PointsF::Zero(3, 3);
+  const std::string text = objects_text({&surface, 1}, {&x, 1}, "sheet.mtl");
+  CHECK(fake::has(text, "usemtl default\nf 1 2 3\nusemtl default_1\nf 3 2 1\n"));
+  CHECK(objects_materials({&surface, 1}) == "newmtl default\nKd 1 0 0\n");
 }
 
 TEST_CASE("USD: a garment has its file's vertices, faces, coordinates, normals, materials and parts",

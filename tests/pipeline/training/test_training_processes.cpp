@@ -4,8 +4,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/host/csv_columns.hpp"
 #include "pipeline/processes/together.hpp"
-#include "pipeline/training/csv_charts.hpp"
 #include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"

@@ -108,6 +108,27 @@ TEST_CASE("packed positions: jumps, far vertices and what is not finite come bac
     }
 }
 
+TEST_CASE("packed positions: what is small may lie or move far away", "[view]") {
+  for (const auto& [place, way] : {std::pair(0.f, 90.f), std::pair(3000.f, 0.f), std::pair(-90000.f, 1000.f)}) {
+    PackedPositions packed;
+    std::vector<PointsF> frames;
+    for (int f = 0; f < 3; ++f) {
+      PointsF x(2, 3);
+      x << place, 0, 0, place, 0.001f, 0;
+      x.col(0).array() += way * static_cast<float>(f) / 2;
+      frames.push_back(x);
+      if (f == 0) packed.step = grid_step(x);
+      append(packed, x);
+    }
+    INFO(place << " " << way);
+    CHECK(packed.absent == std::vector<std::vector<int>>(3));
+    const auto found = read(packed, 2);
+    for (int f = 0; f < 3; ++f)
+      for (Eigen::Index i = 0; i < 6; ++i)
+        CHECK(std::abs(static_cast<double>(found[f][i]) * packed.step - frames[f].data()[i]) <= 5.1e-5);
+  }
+}
+
 TEST_CASE("packed positions: the grid is as fine as the surface is small", "[view]") {
   CHECK(grid_step(PointsF::Zero(3, 3)) == 1e-4);
   CHECK(grid_step(PointsF::Constant(2, 3, INFINITY)) == 1e-4);
@@ -116,6 +137,8 @@ TEST_CASE("packed positions: the grid is as fine as the surface is small", "[vie
   CHECK(grid_step(x) == Approx(0.01 / 32768));
   x(1, 2) = 100;
   CHECK(grid_step(x) == 1e-4);
+  x(1, 2) = 0.001f;
+  CHECK(grid_step(x) == 1e-7);
   PackedPositions empty;
   empty.step = 1e-4;
   append(empty, PointsF(0, 3));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -29,16 +30,17 @@ struct Shot {
   std::string dom, log, png;
 };
 
-// Opens page#options in a fresh headless browser; what it wrote, printed and saw.
-Shot open(const std::string& chromium, const std::filesystem::path& page, const std::string& options) {
+// Opens page#options in a fresh headless browser; what it wrote, printed and saw. window: WIDTH,HEIGHT in pixels.
+Shot open(const std::string& chromium, const std::filesystem::path& page, const std::string& options,
+          const std::string& window = "640,480") {
   const std::filesystem::path folder = page.parent_path();
   const auto at = [&](const char* name) { return fmt::format("'{}'", (folder / name).string()); };
   std::filesystem::remove(folder / "shot.png");
   const std::string command = fmt::format(
       "timeout 120 '{}' --headless --no-sandbox --use-angle=swiftshader-webgl --disable-background-networking "
-      "--disable-component-update --disable-sync --no-first-run --hide-scrollbars --window-size=640,480 "
+      "--disable-component-update --disable-sync --no-first-run --hide-scrollbars --window-size={} "
       "--enable-logging=stderr --user-data-dir={} --screenshot={} --dump-dom 'file://{}#{}' > {} 2> {}",
-      chromium, at("profile"), at("shot.png"), page.string(), options, at("dom.html"), at("log.txt"));
+      chromium, window, at("profile"), at("shot.png"), page.string(), options, at("dom.html"), at("log.txt"));
   REQUIRE(std::system(command.c_str()) == 0);
   return {fake::whole(folder / "dom.html"), fake::whole(folder / "log.txt"), fake::whole(folder / "shot.png")};
 }
@@ -57,6 +59,8 @@ void check_quiet(const Shot& shot) {
   CHECK(shot.log.find("ERROR:CONSOLE") == std::string::npos);
   CHECK(shot.log.find("THREE.") == std::string::npos);
 }
+
+json probed(const Shot& shot) { return json::parse(between(shot.dom, "id=\"probe\">", "</script>")); }
 
 // A user's hands: every button and key, each followed by the frame that is then current.
 constexpr const char* hands = R"(<script>
@@ -107,7 +111,7 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
 
   const Shot early = open(chromium, page, "theme=light&marks=1&probe=0,12,23,24,25");
   check_quiet(early);
-  const json drawn = json::parse(between(early.dom, "id=\"probe\">", "</script>"));
+  const json drawn = probed(early);
   REQUIRE(drawn.size() == 5);
   for (const json& frame : drawn) {
     INFO(frame);
@@ -130,6 +134,39 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
   CHECK(early.png.size() > 40'000);
   CHECK(late.png.size() > 40'000);
   CHECK(early.png != late.png);
+}
+
+TEST_CASE("view: the figure fills a wide window and a narrow one, and stays in it", "[view][browser]") {
+  const std::string chromium = find_chromium();
+  if (chromium.empty()) {
+    WARN("skipped: no chromium on the path");
+    return;
+  }
+  const fake::Folder folder("view_widths");
+  const std::filesystem::path page = folder.path / "page.html";
+  try {
+    write_view_page({fake::draping_run("sheet", 20, 30)}, page);
+  } catch (const Error& absent) {
+    WARN("skipped: " << absent.what());
+    return;
+  }
+  for (const auto& [window, theme] : {std::pair("1440,900", "light"), std::pair("390,800", "dark")}) {
+    const Shot shot = open(chromium, page, fmt::format("theme={}&probe=0,7,14,21,29", theme), window);
+    INFO(window << " " << theme);
+    check_quiet(shot);
+    CHECK(shot.dom.find(fmt::format("data-theme=\"{}\"", theme)) != std::string::npos);
+    double left = 1, right = 0, bottom = 1, top = 0;
+    for (const json& frame : probed(shot)) {
+      left = std::min(left, frame["box"]["left"].get<double>());
+      right = std::max(right, frame["box"]["right"].get<double>());
+      bottom = std::min(bottom, frame["box"]["bottom"].get<double>());
+      top = std::max(top, frame["box"]["top"].get<double>());
+    }
+    INFO(left << " to " << right << " and " << bottom << " to " << top);
+    CHECK(std::min(left, bottom) > 0);
+    CHECK(std::max(right, top) < 1);
+    CHECK(std::max(right - left, top - bottom) > 0.6);  // of the window, over these frames
+  }
 }
 
 }  // namespace selvedge::test_view_browser

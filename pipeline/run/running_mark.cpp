@@ -1,4 +1,4 @@
-#include "pipeline/training/running_mark.hpp"
+#include "pipeline/run/running_mark.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
