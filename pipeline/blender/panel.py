@@ -24,10 +24,15 @@ class VIEW3D_PT_selvedge(bpy.types.Panel):
         if not garment:
             layout.label(text="Select the mesh of a garment", icon="INFO")
             return
-        wide = max(20, int(context.region.width / (7.5 * context.preferences.system.ui_scale)))
+        wide = letters_a_line(context)
         draw_choices(layout, garment, context.scene)
         draw_buttons(layout, garment, context.window_manager.selvedge)
         draw_result(layout, garment.selvedge, wide)
+
+
+def letters_a_line(context):
+    """About as many as fit beside an icon, in Blender's own font."""
+    return max(12, int((context.region.width / context.preferences.system.ui_scale - 75) / 7.5))
 
 
 def draw_choices(layout, garment, scene):

@@ -83,7 +83,7 @@ class SelvedgeSettings(bpy.types.PropertyGroup):
         name="Pins", description="Vertices with a weight of 0.5 or more in this group go where Blender puts them"
     )
     rest: EnumProperty(name="Rest shape", description="The shape in which the cloth has no stress", items=RESTS)
-    scene_range: BoolProperty(name="Frames of the scene", description="Bake the scene's frame range", default=True)
+    scene_range: BoolProperty(name="Scene frames", description="Bake the scene's frame range", default=True)
     frame_start: IntProperty(name="Start", description="First frame; the garment begins as it is there", default=1)
     frame_end: IntProperty(name="End", description="Last frame", default=250)
     quality: EnumProperty(name="Quality", description="From fast to accurate", items=QUALITIES, default="STANDARD")

@@ -47,7 +47,8 @@ std::optional<TaughtClip> simulate_clip(Setup setup, const std::string& name, co
         if (fit) add_motion(clip.setup, known, event.drive, event.state.x, *fit);
         known = remembering(known, event.drive, event.state);
         clip.run.push_back(known.x);
-        if (known.frame % roll_frames == roll_horizon) clip.begins.push_back(known);
+        const bool whole = known.frame + roll_frames <= clip.setup.run.frames;
+        if (known.frame % roll_frames == 0 && whole) clip.begins.push_back(known);
         stopped = stop && stop();
         return !stopped;
       },
@@ -67,7 +68,7 @@ bool roll_out(const TaughtClip& clip, Stepper& stepper, const TeachStop& stop, R
   for (const State& begin : clip.begins) {
     State state = begin, known = begin, taught;
     bool stopped = false;
-    const int end = std::min(begin.frame + roll_frames, setup.run.frames);
+    const int end = begin.frame + roll_frames;
     const StepReport last = simulate(
         setup.scene, stepper, setup.drive_at, dt, end, state,
         [&](const FrameEvent& event) {
@@ -75,7 +76,7 @@ bool roll_out(const TaughtClip& clip, Stepper& stepper, const TeachStop& stop, R
           if (event.report.status != StepStatus::accepted) return false;
           const double distance = root_mean_square(event.state.x - clip.run[static_cast<std::size_t>(state.frame)]);
           if (state.frame == begin.frame + 1) measure.one += distance * distance, ++measure.ones;
-          if (state.frame == begin.frame + roll_horizon) measure.ten += distance * distance, ++measure.tens;
+          if (state.frame == end) measure.ten += distance * distance, ++measure.tens;
           measure.pairs = std::max(measure.pairs, event.report.collision.pairs_after);
           measure.passed += event.report.collision.passed_through;
           if (solver && solver->step(known, event.drive, dt, taught).status == StepStatus::accepted)

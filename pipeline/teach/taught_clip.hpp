@@ -18,8 +18,8 @@ struct TaughtClip {
   std::vector<Points> run;    // the cloth at each frame, from frame 0 on [m]
 };
 
-// Roll-outs begin every so many frames of the solver's run, and are as long. They are measured at the horizon.
-constexpr int roll_frames = 20, roll_horizon = 10;
+// Roll-outs begin every so many frames of the solver's run, are as long, and are measured at their ends.
+constexpr int roll_frames = 10;
 
 // What roll-outs of a stepper, each from a state of the solver, came to.
 struct RollDistances {

@@ -49,9 +49,9 @@ Setup read_with(const TeachRequest& request, const std::string& key, const std::
   overrides.insert(overrides.end(), {key + "=" + quoted_yaml(clip), "run.stepper=" + stepper,
                                      "run.learned.weights=" + quoted_yaml(std::filesystem::absolute(request.out))});
   Setup setup = read_setup(request.scene, overrides);
-  if (setup.run.frames < 2 * roll_horizon)
+  if (setup.run.frames < 2 * roll_frames)
     throw Error(fmt::format("has {} frames of the clip `{}`", setup.run.frames, clip), request.scene.string(),
-                fmt::format("run {} or more (--set run.frames)", 2 * roll_horizon));
+                fmt::format("run {} or more (--set run.frames)", 2 * roll_frames));
   read_tissue(cache_folder(), setup.bodies);
   return setup;
 }

@@ -152,9 +152,7 @@ void read_taught(FieldsIn& in, Trainer& trainer) {
     RollingState state;
     ask_to_go_on(written.request, trainer);
     go_on(in, written, trainer, state);
-    std::promise<TeacherStep> taught;
-    taught.set_value({std::move(target), nullptr, ""});
-    state.taught = taught.get_future().share();
+    state.taught = made_target(std::move(target));
     Graph raw;
     if (!raw_graph_of(making, trainer.network.weights.tables, state, raw)) in.fail("has a state without a graph");
     trainer.taught.all.push_back(taught_copy(state, std::move(raw)));

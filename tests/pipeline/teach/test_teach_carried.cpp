@@ -57,7 +57,7 @@ TEST_CASE("teach: coefficients that are fitted on clips are nearer to the solver
   CHECK(report.rows[0].stepper == "carried");
   CHECK(report.rows[1].stepper == "carried_fitted");
   CHECK(report.rows[1].rolls.distance_after_one() < report.rows[0].rolls.distance_after_one());
-  CHECK(report.rows[1].rolls.tens == 2);
+  CHECK(report.rows[1].rolls.tens == 3);
   CHECK(report.rows[1].rolls.refused == 0);
   CHECK_THAT(teach_text(report), Contains("carried_rough") && Contains("kept") && Contains("motion_before"));
   CHECK_THAT(teach_json(report), Contains("\"after_10_mm\""));
