@@ -27,7 +27,7 @@ AddCommand check_command, untangle_command, push_command, dress_command, pattern
     fit_command, export_command, view_command;
 // suite_commands.cpp
 AddCommand bench_command, stress_command, compare_command, validate_command, stability_command, wardrobe_command;
-AddCommand cells_command, cell_command, gather_command;  // cell_commands.cpp
+AddCommand cells_command, cell_command, gather_command;    // cell_commands.cpp
 AddCommand dataset_command, train_command, teach_command;  // training_commands.cpp
 AddCommand weights_import_command, weights_info_command, weights_halve_command, weights_parity_command;
 

@@ -42,8 +42,8 @@ struct Sample {
   TaughtState* again = nullptr;   // not null: its network and losses are as they were, and it does not go on
   Graph graph;
   std::unique_ptr<TaughtState> kept;  // of a state of the pool, where it is learned from again later
-  NextCloth next;        // the network's result
-  FeatureRows d_output;  // derivative of the objective by the network's output
+  NextCloth next;                     // the network's result
+  FeatureRows d_output;               // derivative of the objective by the network's output
   SampleRecord record;
 };
 
@@ -63,9 +63,9 @@ struct Trainer {
   std::unique_ptr<RollQueue> queue;
   std::unique_ptr<Teacher> teacher;  // null: no term of the objective needs one
   TaughtStates taught;
-  RunInputs inputs;                  // files of people, and a hash of the training world
-  TrainedOn trained_on;              // includes the runs whose weights it began with
-  std::vector<int> start_pairs;      // of the roll-outs begun by this process, where they are counted
+  RunInputs inputs;              // files of people, and a hash of the training world
+  TrainedOn trained_on;          // includes the runs whose weights it began with
+  std::vector<int> start_pairs;  // of the roll-outs begun by this process, where they are counted
   // Memory that is used again:
   Tape tape;
   std::vector<Sample> samples;
