@@ -178,13 +178,18 @@ Verdict judge_motion(const Guard& guard, const State& from, double dt, const Poi
   return m.acceleration <= most.acceleration && goes_on ? Verdict::admitted : Verdict::moved_too_far;
 }
 
+Verdict judge_stretch(const Guard& guard, const State& from, const Points& x, GuardMeasures& m) {
+  m.stretch_before = largest_stretch(guard.scene, from.x);
+  m.stretch = largest_stretch(guard.scene, x);
+  const double most = std::max(guard.options.stretch, guard.options.stretch_growth * m.stretch_before);
+  return m.stretch <= most ? Verdict::admitted : Verdict::overstretched;
+}
+
 Verdict judge(Guard& guard, const State& from, const Drive& drive, double dt, const Points& x,
               const AskTouching& touching, GuardMeasures& m) {
   const GuardOptions& most = guard.options;
   if (const Verdict motion = judge_motion(guard, from, dt, x, m); motion != Verdict::admitted) return motion;
-  m.stretch_before = largest_stretch(guard.scene, from.x);
-  m.stretch = largest_stretch(guard.scene, x);
-  if (!(m.stretch <= std::max(most.stretch, most.stretch_growth * m.stretch_before))) return Verdict::overstretched;
+  if (const Verdict stretch = judge_stretch(guard, from, x, m); stretch != Verdict::admitted) return stretch;
   measure_energy(guard, from, x, m);
   if (!(m.energy_growth <= most.energy_growth)) return Verdict::energy_gain;
   measure_residual(guard, from, drive, dt, x, touching ? touching() : std::vector<char>{}, m);

@@ -69,6 +69,9 @@ Verdict judge(Guard&, const State& from, const Drive&, double dt, const Points& 
 // The first two tests alone (finite numbers, motion), for callers that process a proposal before it is judged.
 Verdict judge_motion(const Guard&, const State& from, double dt, const Points& x, GuardMeasures& measures);
 
+// The test of stretch alone, for callers that leave out what costs an elastic gradient. x must be finite.
+Verdict judge_stretch(const Guard&, const State& from, const Points& x, GuardMeasures& measures);
+
 // All measures, even beyond bounds. x must be finite.
 GuardMeasures measure(Guard&, const State& from, const Drive&, double dt, const Points& x, const AskTouching&);
 

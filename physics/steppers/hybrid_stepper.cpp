@@ -123,9 +123,11 @@ Verdict HybridStepper::may_ask(const State& from, const Drive& drive, const Prop
   return Verdict::none;
 }
 
+// Of the elastic tests the mode `response` has that of stretch alone, which needs neither gradient nor search.
 Verdict HybridStepper::judged(const Work& work, const Points& x) {
   const Timed timed(work.report.seconds.guard);
   GuardMeasures measures;
+  if (options_.mode == HybridMode::response) return judge_stretch(guard_, work.from, x, measures);
   return judge(
       guard_, work.from, work.drive, work.dt, x,
       [&] { return touching_vertices(contact_, work.from, work.drive.obstacles, x); }, measures);
@@ -159,9 +161,7 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   const ResolveReport resolved = resolve_proposal(contact_, options, work.from, nullptr, x, obstacles);
   add(resolved, work.report);
   if (!resolved.clean) return Verdict::penetrating;
-  // What the elastic tests would find is met in the mode `response` by the bound of the energy, after the audits.
-  if (options_.mode != HybridMode::response)
-    if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
+  if (const Verdict verdict = judged(work, x); verdict != Verdict::admitted) return verdict;
   work.report.substeps = 1;
   work.report.collision.pairs_before = 0;
   Points v = (x - work.from.x) / work.dt;
