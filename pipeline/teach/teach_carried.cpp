@@ -117,6 +117,7 @@ bool fit_in_rounds(const TeachRequest& request, const std::vector<TaughtClip>& c
 bool measure_held_out(const TeachRequest& request, const std::string& key, TeachReport& report) {
   const std::vector<TaughtClip> clips = simulate_clips(request, key, request.held_out, nullptr);
   if (clips.size() < request.held_out.size()) return false;
+  if (clips.empty()) return true;
   for (const char* stepper : {"carried", carried_fitted_name, "carried_rough"}) {
     TeachRow row{stepper, {}};
     for (const TaughtClip& clip : clips) {

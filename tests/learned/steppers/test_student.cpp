@@ -2,6 +2,7 @@
 
 #include "learned/steppers/learned_state.hpp"
 #include "learned/steppers/learned_stepper.hpp"
+#include "physics/energies/measures.hpp"
 #include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
@@ -36,6 +37,8 @@ fake::LearnedCase worn_sheet(int frames) {
   return worn;
 }
 
+double stretch_of(const Scene& scene, const Points& x) { return principal_stretches(scene, x).col(1).maxCoeff(); }
+
 // All weights of the decoder are zero.
 fake::NarrowNetwork silent_student() {
   fake::NarrowNetwork student = fake::narrow_network("student");
@@ -50,7 +53,9 @@ std::unique_ptr<Stepper> learned(const Scene& scene, const fake::NarrowNetwork& 
   return make_learned_stepper(scene, network.architecture, network.weights);
 }
 
-std::unique_ptr<Stepper> hybrid(const Scene& scene, const fake::NarrowNetwork& network, HybridMode mode) {
+// Nothing is solved behind the response, so that cloth which meets the plate is stretched.
+std::unique_ptr<Stepper> hybrid(const Scene& scene, const fake::NarrowNetwork& network, HybridMode mode,
+                                double stretch = 10) {
   HybridParts parts{learned(scene, network), make_recovering_conventional_stepper(scene)};
   parts.hand_over = [features = network.architecture.features](const State& from, const Drive& drive, State& to) {
     carry_frame(features, from, drive, to);
@@ -58,6 +63,7 @@ std::unique_ptr<Stepper> hybrid(const Scene& scene, const fake::NarrowNetwork& n
   HybridOptions options;
   options.mode = mode;
   options.longest_stretch = 1;
+  options.guard.stretch = stretch;
   return make_hybrid_stepper(scene, std::move(parts), options);
 }
 
@@ -107,6 +113,24 @@ TEST_CASE("student: without an output, and with the response behind it, it is th
   }
   CHECK(proposed >= 3);
   CHECK(touched > 0);
+}
+
+TEST_CASE("student: cloth that the response has stretched too far is refused", "[learned][student][hybrid]") {
+  const fake::LearnedCase worn = worn_sheet(12);
+  const GuardOptions bounds;
+  const auto stepper = hybrid(worn.scene, silent_student(), HybridMode::response, bounds.stretch);
+  State from = worn.state;
+  int refused = 0;
+  for (const Drive& drive : worn.drives) {
+    State to;
+    const StepReport report = testing::frame(worn.scene, *stepper, from, drive, frame_dt, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    refused += report.verdict == Verdict::overstretched;
+    const double most = std::max(bounds.stretch, bounds.stretch_growth * stretch_of(worn.scene, from.x));
+    if (report.verdict == Verdict::admitted) CHECK(stretch_of(worn.scene, to.x) <= most);
+    from = to;
+  }
+  CHECK(refused > 0);
 }
 
 TEST_CASE("student: the frames that turn its output are those of the skinned targets", "[learned][student]") {

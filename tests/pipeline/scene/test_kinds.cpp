@@ -106,8 +106,8 @@ TEST_CASE("kinds: without it the file is refused, and faults in its options are 
   CHECK_THROWS_WITH(read(folder, "{stepper: counting, counting: {speed: -1}}", with_counting()), Contains("speed"));
   Kinds kinds = with_counting();
   CHECK_THROWS_AS(kinds.add({.name = "icm"}), Error);
-  CHECK(kinds.names() ==
-        std::vector<std::string>{"conventional", "carried", "carried_rough", "icm", "learned", "hybrid", "counting"});
+  CHECK(kinds.names() == std::vector<std::string>{"conventional", "carried", "carried_fitted", "carried_rough", "icm",
+                                                  "learned", "hybrid", "counting"});
   CHECK_FALSE(kinds.find("other"));
 }
 

@@ -191,7 +191,8 @@ TEST_CASE("known steppers: a network beside the carried guess, behind the respon
   for (const std::string mode : {"response", "rough"}) {
     INFO(mode);
     const Folder folder("student_" + mode);
-    const Setup setup = scene_for("hybrid", folder, {"run.hybrid.mode=" + mode}, fake::narrow_network("student", 1e-5));
+    const Setup setup = scene_for("hybrid", folder, {"run.hybrid.mode=" + mode, "run.hybrid.guard.stretch=10"},
+                                  fake::narrow_network("student", 1e-5));
     auto kept = make_stepper(setup), dropped = make_stepper(setup);
     State a = setup.initial, b = setup.initial;
     int proposed = 0;

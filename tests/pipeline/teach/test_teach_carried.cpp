@@ -120,8 +120,9 @@ TEST_CASE("teach: what cannot be taught is said, with a cure", "[teach]") {
     change(request);
     return request;
   };
-  CHECK_THROWS_WITH(teach_carried(with([](TeachRequest& r) { r.clips = {"wolk"}; })),
-                    Contains("scene.yaml") && Contains("unknown clip `wolk`") && Contains("did you mean `walk`"));
+  CHECK_THROWS_WITH(
+      teach_carried(with([](TeachRequest& r) { r.clips = {"wolk"}; })),
+      Contains("obstacles.0.body.clip") && Contains("unknown clip `wolk`") && Contains("did you mean `walk`"));
   CHECK_THROWS_WITH(teach_carried(with([](TeachRequest& r) { r.held_out = {"walk"}; })), Contains("--held-out"));
   CHECK_THROWS_WITH(teach_carried(with([](TeachRequest& r) { r.clips = {}; })), Contains("--clips"));
   CHECK_THROWS_WITH(teach_carried(with([](TeachRequest& r) { r.out = "w.yaml"; })), Contains(".h5"));

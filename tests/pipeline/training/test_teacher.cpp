@@ -8,7 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "physics/steppers/carried_stepper.hpp"
+#include "physics/steppers/carried_guess.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/host/csv_columns.hpp"
 #include "pipeline/training/simulate_frames.hpp"
@@ -180,13 +180,14 @@ TEST_CASE("teacher: kept states are drawn at random, and the oldest one goes fir
   for (std::size_t k = 2; k < 5; ++k) CHECK(std::abs(drawn[added[k]] - 200) < 40);
 }
 
-TEST_CASE("teacher: a student without an output is the stepper `carried`, until it has learned", "[training]") {
+TEST_CASE("teacher: a student without an output is the carried guess and the response, until it has learned",
+          "[training]") {
   auto trainer = make_trainer(kept_training());
   RollRequest request;
   request.first_frame = 30;
   request.frames = 3;
   request.still = false;
-  request.simulated = 6;  // nothing is tangled there
+  request.simulated = 6;
   TaughtRoll taught{make_roll(*trainer->maker, request), {}};
   const Scene& scene = taught.roll.scene->scene;
   const auto drive_at = [&](std::size_t k) {
@@ -198,10 +199,12 @@ TEST_CASE("teacher: a student without an output is the stepper `carried`, until 
   before.x = state.now.previous;
   before.memory = carried_memory({}, drive_at(0), before.x);
   at.memory = carried_memory(before, drive_at(1), at.x);
-  const auto carried = make_carried_stepper(scene);
+  const auto behind = make_behind(scene, BehindNetwork::response);
   for (std::size_t k = 2; k < taught.roll.body.size(); ++k) {
+    const Points guess = carried_guess(scene, at, drive_at(k), learned_dt);
     State to;
-    REQUIRE(carried->step(at, drive_at(k), learned_dt, to).status == StepStatus::accepted);
+    REQUIRE(behind->step(at, drive_at(k), learned_dt, to, {.guess = &guess}).status == StepStatus::accepted);
+    to.memory = carried_memory(at, drive_at(k), to.x);
     at = std::move(to);
   }
   taught.end = at.x;
