@@ -51,7 +51,6 @@ def test_progress_and_stop(seen):
 
 def test_resume(seen):
     found, _ = seen
-    assert any(text.startswith("reads frame ") for text in found["frames"])
     assert found["resumed"]["message"] == f"{FRAMES} of {FRAMES} frames, clean" and found["resumed"]["clean"]
 
 

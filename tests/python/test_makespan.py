@@ -18,6 +18,6 @@ def test_cells_of_known_times():
 
 def test_the_table_of_the_page():
     said = subprocess.run([sys.executable, HERE / "makespan.py"], capture_output=True, text=True, check=True).stdout
-    page = (HERE.parents[1] / "docs" / "scale.md").read_text()
+    page = (HERE.parents[1] / "docs" / "results" / "cells.md").read_text()
     for order, span, over in (line.strip("| ").split(" | ") for line in said.splitlines()[2:]):
         assert f"| {span} | {over} |" in page, order
