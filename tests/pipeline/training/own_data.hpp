@@ -11,6 +11,7 @@
 #include "tests/pipeline/fake_smpl.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/small_person.hpp"
+#include "tests/pipeline/training/tiny_training.hpp"
 
 // A folder with a user's own data for training.
 namespace selvedge::fake {
@@ -69,12 +70,5 @@ struct OwnData {
     return "";
   }
 };
-
-inline std::vector<float> weights_of(Trainer& trainer) {
-  std::vector<float> all;
-  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
-    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
-  return all;
-}
 
 }  // namespace selvedge::fake

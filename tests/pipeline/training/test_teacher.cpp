@@ -21,6 +21,7 @@
 namespace selvedge::test_teacher {
 
 using fake::Folder;
+using fake::weights_of;
 
 namespace {
 
@@ -63,13 +64,6 @@ RollingState state_in_motion(int frame) {
   RollingState state;
   begin_roll(make_roll(fake::tiny_maker(), request), state);
   return state;
-}
-
-std::vector<float> weights_of(Trainer& trainer) {
-  std::vector<float> all;
-  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
-    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
-  return all;
 }
 
 }  // namespace

@@ -16,16 +16,11 @@
 
 namespace selvedge::test_train {
 
+using fake::few_steps;
 using fake::Folder;
+using fake::weights_of;
 
 namespace {
-
-std::vector<float> weights_of(Trainer& trainer) {
-  std::vector<float> all;
-  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
-    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
-  return all;
-}
 
 std::string error_of(const std::filesystem::path& checkpoint, const TrainingOptions& options) {
   try {
@@ -37,19 +32,11 @@ std::string error_of(const std::filesystem::path& checkpoint, const TrainingOpti
   return "";
 }
 
-TrainingOptions few_steps() {
-  TrainingOptions options = fake::tiny_training();
-  options.steps = 40;
-  options.pool.states = 3;
-  options.optimiser.warm_up = 4;
-  return options;
-}
-
 }  // namespace
 
 TEST_CASE("training: what is resumed goes on with the same bits", "[training]") {
   const Folder folder("train_resume");
-  const TrainingOptions options = few_steps();
+  const TrainingOptions options = few_steps(3);
   auto whole = make_trainer(options);
   for (int k = 0; k < 11; ++k) train_step(*whole);
   TrainingHistory history{"steps\n", "measures\n", 3, 0.5, 7};
@@ -82,7 +69,7 @@ TEST_CASE("training: what is resumed goes on with the same bits", "[training]") 
 
 TEST_CASE("training: libtorch goes the steps of the kernels, and a run may change the device", "[.torch]") {
   const Folder folder("train_device");
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(3);
   auto ours = make_trainer(options);
   const std::vector<float> first = weights_of(*ours);
   options.device = NetworkDevice::automatic;
@@ -107,7 +94,7 @@ TEST_CASE("training: libtorch goes the steps of the kernels, and a run may chang
 
 TEST_CASE("training: a batch has the same bits on any number of threads and when it is resumed", "[training]") {
   const Folder folder("train_batch");
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(3);
   options.pool.states = 5;
   options.optimiser.batch = 3;
   auto whole = make_trainer(options), other = make_trainer(options);
@@ -127,7 +114,7 @@ TEST_CASE("training: a batch has the same bits on any number of threads and when
 }
 
 TEST_CASE("training: a sample of a batch without a finite loss is dropped, and the others are learned", "[training]") {
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(3);
   options.optimiser.batch = options.pool.states;
   auto trainer = make_trainer(options);
   train_step(*trainer);
@@ -147,7 +134,7 @@ TEST_CASE("training: a sample of a batch without a finite loss is dropped, and t
 
 TEST_CASE("training: damaged and foreign checkpoints are one error", "[training]") {
   const Folder folder("train_damage");
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(3);
   options.optimiser.warm_up = 1;
   auto trainer = make_trainer(options);
   const auto file = folder.path / "checkpoint.h5";
@@ -168,7 +155,7 @@ TEST_CASE("training: damaged and foreign checkpoints are one error", "[training]
 }
 
 TEST_CASE("training: samples without a finite loss are left and counted, many in a row stop it", "[training]") {
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(3);
   options.optimiser.warm_up = 2;
   options.watch.most_bad_samples = 5;
   auto trainer = make_trainer(options);
@@ -218,7 +205,7 @@ TEST_CASE("training: a run leaves its files, and one that is stopped goes on", "
 TEST_CASE("training: a network beside the carried guess learns in one pass, and goes on with the same bits",
           "[training][student]") {
   const Folder folder("train_student");
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(3);
   options.architecture = "student";
   CHECK_THROWS_AS(make_trainer(options), Error);  // two passes
   options.pool.passes = 1;

@@ -15,31 +15,18 @@
 
 namespace selvedge::test_training_processes {
 
+using fake::few_steps;
 using fake::Folder;
 using fake::Turns;
+using fake::weights_of;
 
 // Training on several processes, for which threads stand in. With mpirun: tests/pipeline/commands/test_mpirun.cpp.
 
 namespace {
 
-std::vector<float> weights_of(Trainer& trainer) {
-  std::vector<float> all;
-  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
-    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
-  return all;
-}
-
-TrainingOptions few_steps() {
-  TrainingOptions options = fake::tiny_training();
-  options.steps = 40;
-  options.pool.states = 2;
-  options.optimiser.warm_up = 4;
-  return options;
-}
-
 // What is learned depends on the samples alone: all roll-outs have two frames of one pass, and none is given up.
 TrainingOptions with_samples_in_turn(int states_and_batch) {
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(2);
   options.pool.frames = {2, 2, 0, 0.5};
   options.pool.random_length = false;
   options.pool.passes = 1;
@@ -148,7 +135,7 @@ TEST_CASE("training processes: two with a sample each learn what one does with b
 }
 
 TEST_CASE("training processes: the same bits whoever is first, and on any number of threads", "[training][processes]") {
-  TrainingOptions options = few_steps();
+  TrainingOptions options = few_steps(2);
   options.optimiser.freeze_statistics = GENERATE(true, false);
   INFO("frozen statistics: " << options.optimiser.freeze_statistics);
   const std::vector<Steps> before = steps_of_ranks(options, 8, {0, 1, 2}),
@@ -164,7 +151,7 @@ TEST_CASE("training processes: the same bits whoever is first, and on any number
 
 TEST_CASE("training processes: what they go on from has the same bits, and fits as a whole", "[training][processes]") {
   const Folder folder("train_processes");
-  const TrainingOptions options = few_steps();
+  const TrainingOptions options = few_steps(2);
   const auto file = folder.path / "checkpoint.h5";
   std::vector<std::vector<float>> whole(2), resumed(2);
   std::vector<TrainingCounts> counts(2), counts_resumed(2);
@@ -227,7 +214,7 @@ TEST_CASE("training processes: what they go on from has the same bits, and fits 
 TEST_CASE("training processes: a checkpoint of which a part cannot be written leaves the one before",
           "[training][processes]") {
   const Folder folder("train_processes_full");
-  const TrainingOptions options = few_steps();
+  const TrainingOptions options = few_steps(2);
   const auto file = folder.path / "checkpoint.h5";
   const auto failed = messages(Turns({0, 1}).run([&](Processes& processes) {
     together(&processes, [&] {

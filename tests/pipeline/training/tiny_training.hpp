@@ -8,6 +8,22 @@ namespace selvedge::fake {
 
 inline TrainingOptions tiny_training() { return read_training(config_folder() / "training" / "tiny.yaml"); }
 
+// A pool of few states that learns for 40 steps.
+inline TrainingOptions few_steps(int states) {
+  TrainingOptions options = tiny_training();
+  options.steps = 40;
+  options.pool.states = states;
+  options.optimiser.warm_up = 4;
+  return options;
+}
+
+inline std::vector<float> weights_of(Trainer& trainer) {
+  std::vector<float> all;
+  for (const WeightArray& array : weight_arrays(trainer.architecture, trainer.network.weights))
+    all.insert(all.end(), array.data, array.data + array.rows * array.columns);
+  return all;
+}
+
 // The roll-outs of the configuration `tiny`, made once, because garment and mannequin take long.
 inline RollMaker& tiny_maker() {
   static RollMaker maker{tiny_training(),
