@@ -1,7 +1,7 @@
 """How long cells take on many workers, by the order in which they are given out: makespan.py [WORKERS] [ROWS.csv].
 
 ROWS.csv has the columns vertices, frames and milliseconds (a frame); it is docs/garments/wardrobe.csv otherwise. The
-table stands in docs/scale.md.
+table is in docs/results/cells.md.
 """
 
 import csv

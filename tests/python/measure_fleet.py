@@ -1,4 +1,4 @@
-"""What selvedge.fleet adds to a cell: measure_fleet.py [CELLS] [REPEATS], a table for docs/scale.md.
+"""What selvedge.fleet adds to a cell: measure_fleet.py [CELLS] [REPEATS], a table for docs/results/cells.md.
 
 Cells are those of the program that stands in, which takes as long as a start of Python. A run is compared with a bare
 one of the same cells: as many threads as workers, each of which calls the program on one cell after another, in a
