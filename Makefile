@@ -17,7 +17,7 @@ PACKAGES_asan-core := $(PACKAGES_release)
 PACKAGES_tsan := $(PACKAGES_release) tsan
 PACKAGES_minimal := build viewer test
 
-.PHONY: help program demo blender with-blender test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
+.PHONY: help program demo blender with-blender with-python test everything validate bench stress stability wardrobe compare tutorials fuzz dev long check-install wheel asan asan-core tsan minimal torch mpi format check-format tidy docs clean
 .DEFAULT_GOAL := help
 
 help:  ## This list
@@ -58,10 +58,16 @@ compare: program  ## Compare the conventional stepper's settings: tables and plo
 	@$(PROGRAM) compare configs/compare/conventional.yaml --out out/compare
 
 test: test-release  ## Build and run every test (FILTER=regular expression on test files)
-everything: with-blender test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
+everything: with-blender with-python test long check-install minimal wheel asan fuzz torch mpi tutorials  ## Every test in the builds release, minimal and asan, long ones, of the wheel, fuzzers, those with libtorch and Open MPI and the tutorials too; CI runs a part
 # Blender and a display for it, so that tests and tutorials do not leave out what needs them.
 with-blender:
 	@cmake/install-packages.sh blender
+# Python packages that tests of exports, clusters and the stub want: the same.
+with-python:
+	@cmake/install-packages.sh $(PACKAGES_release)
+	@$(MAKE) --no-print-directory build/release/configured
+	@$(ADDED_release)
+	@cmake/add-test-packages.sh build/release
 fuzz:  ## Readers of files given what a fuzzer makes of files, FUZZ_SECONDS each, with clang (FORMATS="obj ply": only these)
 	@cmake/install-packages.sh build fuzz
 	@$(MAKE) --no-print-directory build/fuzz/configured

@@ -1,7 +1,6 @@
 #include "physics/steppers/hybrid_stepper.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "collision/geometry/error.hpp"
@@ -11,7 +10,6 @@
 #include "physics/frame/frame_audits.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/steppers/finish_step.hpp"
-#include "physics/steppers/proposal_line_search.hpp"
 #include "physics/steppers/proposal_times.hpp"
 #include "physics/steppers/proposal_trust.hpp"
 #include "physics/steppers/substeps.hpp"
@@ -19,10 +17,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int usual_newton = 2;  // iterations of the mode `after_k`
-
 bool asks_for_positions(HybridMode mode) { return mode != HybridMode::fallback; }
-bool solves_from_proposal(HybridMode mode) { return mode == HybridMode::refined || mode == HybridMode::rough; }
 
 std::function<double()> clock_of(const HybridParts& parts) {
   if (parts.clock) return parts.clock;
@@ -37,8 +32,8 @@ void check_pair(const HybridParts& parts, HybridMode mode) {
   };
   if (proposer.only_dt && !parent.accepts(*proposer.only_dt))
     refuse("`" + proposer.name + "` and `" + parent.name + "` take no common time step", "join others");
-  if (solves_from_proposal(mode) && !refiner.traits().honours_extras)
-    refuse("`" + refiner.traits().name + "` takes no first guess, which the modes `refined` and `rough` need",
+  if (mode == HybridMode::rough && !refiner.traits().honours_extras)
+    refuse("`" + refiner.traits().name + "` takes no first guess, which the mode `rough` needs",
            "take another mode, or a stepper that honours extras");
   if (asks_for_positions(mode) && proposer.past_frames > 0 && !parts.hand_over)
     refuse("`" + proposer.name + "` remembers frames and is not told of those that it has not made",
@@ -68,11 +63,7 @@ class HybridStepper final : public Stepper {
         energy_(scene),
         traits_(joint_traits(parts_)),
         audits_(scene),
-        clock_(clock_of(parts_)) {
-    if (options.mode == HybridMode::gated || options.mode == HybridMode::after_k)
-      line_.emplace(scene, options.implicit_euler,
-                    options.mode == HybridMode::after_k ? options.newton.value_or(usual_newton) : 0);
-  }
+        clock_(clock_of(parts_)) {}
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) override;
 
@@ -104,7 +95,6 @@ class HybridStepper final : public Stepper {
   Guard guard_;
   ContactStage contact_;
   EnergyBalance energy_;
-  std::optional<ProposalLineSearch> line_;
   StepperTraits traits_;
   FrameAudits audits_;
   std::function<double()> clock_;
@@ -182,7 +172,7 @@ Verdict HybridStepper::refine(Work& work, const Points& x) {
   return audited(work, Verdict::refined);
 }
 
-// A proposal with impossible motion is refused before a line search, a response or a solve.
+// A proposal with impossible motion is refused before a response or a solve.
 Verdict HybridStepper::propose(Work& work) {
   if (!ask_proposer(work)) return Verdict::not_made;
   if (!asks_for_positions(options_.mode)) return propose_step(work);
@@ -193,12 +183,7 @@ Verdict HybridStepper::propose(Work& work) {
   GuardMeasures measures;
   if (const Verdict motion = judge_motion(guard_, work.from, work.dt, x, measures); motion != Verdict::admitted)
     return motion;
-  if (line_) {
-    const Timed timed(work.report.seconds.guard);
-    if (!search_along(*line_, contact_, work.from, work.drive, work.dt, options_.gate_steps, x))
-      return Verdict::energy_gain;
-  }
-  return solves_from_proposal(options_.mode) ? refine(work, x) : correct(work, std::move(x));
+  return options_.mode == HybridMode::rough ? refine(work, x) : correct(work, std::move(x));
 }
 
 // A proposal with too many near pairs counts as penetrating.

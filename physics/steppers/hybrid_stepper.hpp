@@ -2,10 +2,8 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 
 #include "physics/scene/stepper.hpp"
-#include "physics/solve/implicit_euler.hpp"
 #include "physics/steppers/guard.hpp"
 
 namespace selvedge {
@@ -13,9 +11,6 @@ namespace selvedge {
 enum class HybridMode {
   fallback,   // a proposal that the guard admits becomes the step
   corrected,  // as fallback, after the response to contact has corrected the motion
-  refined,    // a conventional solve begins at the proposal
-  gated,      // as corrected, after a line search of the step's potential from free flight to the proposal
-  after_k,    // as gated, but the line begins where k Newton iterations end
   response,   // as corrected, judged by motion, audits and energy alone
   rough       // one rough solve begins at the proposal, judged in the same way
 };
@@ -24,17 +19,14 @@ enum class HybridMode {
 struct HybridOptions {
   HybridMode mode = HybridMode::corrected;
   GuardOptions guard;
-  std::optional<int> newton;
-  int gate_steps = 6;
   int longest_stretch = 32;
   int admitted_to_halve = 3;
   bool stop_when_slow = false;
   double extra_time = 0.05;
-  ImplicitEulerOptions implicit_euler;
 };
 
 // The steppers inside a hybrid. `proposer` makes steps that are judged; `parent` takes the steps whose proposals are
-// refused. `refiner` makes the solves of the modes `refined` and `rough`; null: the parent does. `hand_over` records a
+// refused. `refiner` makes the solves of the mode `rough`; null: the parent does. `hand_over` records a
 // step that the proposer has not made in its memory of the state; a proposer that remembers frames needs it in all
 // modes but `fallback`.
 struct HybridParts {

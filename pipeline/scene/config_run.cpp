@@ -97,22 +97,11 @@ const Options<HybridOptions>& hybrid_options() {
       {choice("mode", &O::mode,
               {{"fallback", HybridMode::fallback},
                {"corrected", HybridMode::corrected},
-               {"refined", HybridMode::refined},
-               {"gated", HybridMode::gated},
-               {"after_k", HybridMode::after_k},
                {"response", HybridMode::response},
                {"rough", HybridMode::rough}},
-              "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `refined`: as "
-              "the first guess of a conventional solve. `gated`: as `corrected`, after a line search on the step's "
-              "potential. `after_k`: as `gated`, with a line search that starts after k Newton iterations. "
-              "`response`: after the contact response, judged by its motion, the audits and the energy alone. "
+              "How a proposal is used. `fallback`: as it is. `corrected`: after the contact response. `response`: "
+              "after the contact response, judged by its motion, its stretch, the audits and the energy alone. "
               "`rough`: as the first guess of one rough solve, judged in the same way."),
-       or_word(integer("newton", &O::newton, at_least_one,
-                       "Number k of Newton iterations of `after_k`, or the largest number in a solve of `refined`. "
-                       "`auto`: 2 for `after_k`, `max_newton` for `refined`."),
-               "auto"),
-       integer("gate_steps", &O::gate_steps, at_least_one,
-               "Number of points at which the line search of `gated` and `after_k` evaluates the potential."),
        integer("admitted_to_halve", &O::admitted_to_halve, at_least_one,
                "Number of proposals that must be admitted in a row to halve the pause after the next refusal."),
        integer(

@@ -129,28 +129,23 @@ StepperKind learned_kind() {
   return kind;
 }
 
-// The conventional stepper as the scene has it; `newton`: most iterations of a solve.
-std::unique_ptr<Stepper> conventional_part(const Scene& scene, ConventionalOptions options,
-                                           const RecoveryOptions& recovery, std::optional<int> newton = {}) {
-  options.implicit_euler.max_newton = newton.value_or(options.implicit_euler.max_newton);
+std::unique_ptr<Stepper> conventional_part(const Scene& scene, const ConventionalOptions& options,
+                                           const RecoveryOptions& recovery) {
   return decorated(scene, conventional_maker(options), {.recovery = recovery});
 }
 
 MakeStepper hybrid_maker(const Setup& setup) {
-  HybridOptions options = setup.run.hybrid;
-  options.implicit_euler = setup.run.conventional.implicit_euler;
-  return [options, learned = learned_maker(setup), features = network_of(setup).architecture.features,
-          conventional = setup.run.conventional, recovery = setup.run.recovery](const Scene& scene) {
-    HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
-    if (options.mode == HybridMode::refined && options.newton)
-      parts.refiner = conventional_part(scene, conventional, recovery, options.newton);
-    if (options.mode == HybridMode::rough)
-      parts.refiner = conventional_part(scene, one_rough_solve(conventional), recovery);
-    parts.hand_over = [features](const State& from, const Drive& drive, State& to) {
-      carry_frame(features, from, drive, to);
-    };
-    return make_hybrid_stepper(scene, std::move(parts), options);
-  };
+  return
+      [options = setup.run.hybrid, learned = learned_maker(setup), features = network_of(setup).architecture.features,
+       conventional = setup.run.conventional, recovery = setup.run.recovery](const Scene& scene) {
+        HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
+        if (options.mode == HybridMode::rough)
+          parts.refiner = conventional_part(scene, one_rough_solve(conventional), recovery);
+        parts.hand_over = [features](const State& from, const Drive& drive, State& to) {
+          carry_frame(features, from, drive, to);
+        };
+        return make_hybrid_stepper(scene, std::move(parts), options);
+      };
 }
 
 // What proposes, what becomes of it, and what the network leaves out.
@@ -158,17 +153,12 @@ std::vector<PlanLine> hybrid_lines(const Setup& setup) {
   static const std::map<HybridMode, std::string> modes{
       {HybridMode::fallback, "a proposal that the guard admits is the step"},
       {HybridMode::corrected, "its motion goes through the response to contact, then the guard"},
-      {HybridMode::refined, "a conventional solve begins at it"},
-      {HybridMode::gated, "a line search of the step's potential, the response to contact, then the guard"},
-      {HybridMode::after_k, "Newton iterations, a line search from there, the response to contact, then the guard"},
       {HybridMode::response, "its motion goes through the response to contact, then audits and energy decide"},
       {HybridMode::rough, "one rough solve begins at it, then audits and energy decide"}};
   const HybridOptions& hybrid = setup.run.hybrid;
-  const bool guarded = hybrid.mode != HybridMode::refined;
   std::vector<PlanLine> lines{
       {"proposals", true, modes.at(hybrid.mode)},
-      {"guard", guarded,
-       guarded ? "refused steps are taken by the conventional stepper" : "the solve decides what a proposal is worth"},
+      {"guard", true, "refused steps are taken by the conventional stepper"},
       {"proposals by time", hybrid.stop_when_slow,
        hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
                              : "not asked for by run.hybrid.stop_when_slow"}};

@@ -131,8 +131,7 @@ Seen follow(Stepper& stepper, const World& w, State state, int frames) {
   return seen;
 }
 
-constexpr std::array all_modes{HybridMode::fallback, HybridMode::corrected, HybridMode::refined, HybridMode::gated,
-                               HybridMode::after_k,  HybridMode::response,  HybridMode::rough};
+constexpr std::array all_modes{HybridMode::fallback, HybridMode::corrected, HybridMode::response, HybridMode::rough};
 
 }  // namespace
 
@@ -294,7 +293,7 @@ TEST_CASE("hybrid: any two steppers go together in the mode fallback", "[hybrid]
 TEST_CASE("hybrid: parts that lack what a mode needs are refused", "[hybrid]") {
   const World w = testing::swinging_sheet();
   HybridOptions options;
-  options.mode = HybridMode::refined;
+  options.mode = HybridMode::rough;
   CHECK_THROWS_AS(
       make_hybrid_stepper(w.scene,
                           {std::make_unique<FakeProposer>(w.scene, as_solved), make_icm_stepper(w.scene, {}), {}, {}},
@@ -360,10 +359,10 @@ TEST_CASE("hybrid: a rough step is made by the refiner from the proposal", "[hyb
   CHECK_FALSE(same_bits(good.state.x, other.state.x));
 }
 
-TEST_CASE("hybrid: a refined step is as good as the parent's", "[hybrid]") {
+TEST_CASE("hybrid: without a refiner the parent makes the solve, and its step is as good as its own", "[hybrid]") {
   const World w = testing::swinging_sheet();
   HybridOptions options;
-  options.mode = HybridMode::refined;
+  options.mode = HybridMode::rough;
   const auto stepper = hybrid(w.scene, as_solved, options);
   const auto solver = make_recovering_conventional_stepper(w.scene);
   const Seen begun = follow(*stepper, w, w.state, 3);
