@@ -12,7 +12,7 @@ inline constexpr const char* write_cure =
 // that file with O_EXCL, so that it follows no link that somebody left in a shared folder.
 std::filesystem::path path_beside(const std::filesystem::path&);
 
-// The path that a path beside it stands for, for messages; other paths as they are.
+// The path for which path_beside has made this one, for messages; any other path unchanged.
 std::filesystem::path path_in_place(const std::filesystem::path&);
 
 }  // namespace selvedge

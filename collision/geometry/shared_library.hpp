@@ -5,8 +5,8 @@
 
 namespace selvedge {
 
-// The path of a shared library beside the running program: for parts that are built where they are asked for, and
-// opened where they are used.
+// The path of a shared library beside the running program: for parts that are built only on request, and opened only
+// when they are used.
 std::filesystem::path library_beside_program(const std::string& name);
 
 // Opens a library, which is never closed, and returns its function `entry`; null if it has none. `noun`: what it

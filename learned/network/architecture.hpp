@@ -79,7 +79,7 @@ struct Architecture {
 // hood, hood_cvpr, fine15, fine48, contourcraft, contourcraft_paper, senc, small, small_contour, small_senc,
 // small_senc_layers, student, tiny (`preset_names`). Sizes: docs/learned.md. The last six are ours. `small` has no
 // contact of cloth with cloth, `small_senc` has SENC's inputs, `small_senc_layers` adds the edges of `small_contour`,
-// `student` goes on from the carried guess, and `tiny` is for tests. Throws Error at any other name.
+// `student` adds its output to the carried guess, and `tiny` is for tests. Throws Error at any other name.
 Architecture architecture_preset(const std::string& name);
 std::vector<std::string> preset_names();
 

@@ -6,9 +6,9 @@
 
 namespace selvedge {
 
-// After a failed write to an open file: what it still holds goes nowhere when it is closed. A file that HDF5 cannot
-// close crashes the program at its end. Closing also sets the file's length, which /dev/null does not take: so the
-// bytes go to a file in memory that nobody else has.
+// To be called after a failed write to an open file: its unwritten bytes are discarded when it is closed. A file that
+// HDF5 cannot close crashes the program at its end. Closing also sets the file's length, which fails for /dev/null. So
+// the bytes go to a file in memory that nobody else has.
 inline void write_nowhere(hid_t file) {
   void* descriptor = nullptr;
   if (file < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor) < 0) return;

@@ -18,7 +18,7 @@ struct LearnedOptions {
   NetworkDevice device = NetworkDevice::cpu;
 };
 
-// Whether a roll-out may begin with a settling pass: a network that goes on from the carried guess takes the cloth as
+// Whether a roll-out may begin with a settling pass: a network that adds to the carried guess takes the cloth as
 // it is.
 bool may_settle(const Architecture&);
 
@@ -26,7 +26,7 @@ bool may_settle(const Architecture&);
 StepperTraits learned_traits(const Architecture&);
 
 // A network of HOOD's or ContourCraft's kind makes each frame of 1/30 s. Where a roll-out begins, HOOD first takes its
-// relaxation frame (parity README, 18): the cloth is pushed out of the body and falls to rest in a pass that counts 1/3
+// settling frame (parity README, 18): the cloth is pushed out of the body and falls to rest in a pass that counts 1/3
 // s while the body stands still. ContourCraft does so, with its flag is_init and without cloth-cloth edges, only where
 // the options ask for it.
 //

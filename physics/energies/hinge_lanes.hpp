@@ -20,22 +20,22 @@ struct HingeLanes {
   Lane difference;  // of the angle to the one at rest, in [-pi, pi]
   Lane energy;      // [J]
   Lane force[12];   // gradient in the order of Hinge::nodes [N]
-  // Hessian between the nodes (0, 1), (0, 2), (0, 3), (1, 2), (1, 3) and (2, 3), by rows [N/m]. Forces do not see a
-  // translation, so that a node's own block is minus the sum of its row.
+  // Hessian between the nodes (0, 1), (0, 2), (0, 3), (1, 2), (1, 3) and (2, 3), by rows [N/m]. A translation
+  // changes no force, so that a node's own block is minus the sum of its row.
   static constexpr int pairs = 6;
   Lane block[pairs][9];
 };
 
-// The first hinges, as many as fit: `energy`, and `force` where asked for.
+// Loads the first hinges, as many as fit, and writes `energy` and, with `gradient`, `force`.
 void hinge_energies(std::span<const Hinge>, const Points& x, bool gradient, HingeLanes&);
 
-// `block` of the hinges that are loaded: exact, or with `psd` a closed-form PSD bound, the Gauss-Newton part plus the
-// clamped second derivative of the angle, triangle by triangle; with the current length more of the edge's own
-// stretching besides. Derivatives are zero where a triangle is degenerate, and bounded for slivers (height below 1e-4
-// of the edge), where they are no longer exact.
+// Writes `block` of the hinges that are loaded: exact, or with `psd` a closed-form PSD bound. The bound is the
+// Gauss-Newton part plus the clamped second derivative of the angle, triangle by triangle; with the current length a
+// part for the edge's own stretching is added. Derivatives are zero where a triangle is degenerate. For slivers (height
+// below 1e-4 of the edge) they are bounded and not exact.
 void hinge_hessians(bool psd, HingeLanes&);
 
-// The sum [J].
+// The sum of the hinges' energies [J].
 double hinge_energy(std::span<const Hinge>, const Points& x);
 
 }  // namespace selvedge

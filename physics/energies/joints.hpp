@@ -18,13 +18,13 @@ double joint_energy(const Spring&, const Points& x);
 // direction: no force, and the stiffness is the same all round, which for L = 0 is exact. Returns the energy.
 double joint_derivatives(const Spring&, const Points& x, Vec6& gradient, Mat6* hessian, bool psd = true);
 
-// What the scene's joints make of parts 0 .. parts - 1, of which every vertex belongs to one: for each part the lowest
-// one that joints join it to, over others perhaps; itself where they join it to none. With `there`, joints of vertices
-// that it does not mark are left out.
+// The scene's joints join parts 0 .. parts - 1, of which every vertex belongs to one. Returns for each part the lowest
+// part of its joined set; a part without a joint is its own set. With `there`, joints with a vertex that it does not
+// mark are left out.
 std::vector<int> joined_parts(const Scene&, std::span<const int> part_of_vertex, int parts,
                               std::span<const char> there = {});
 
-// Of each vertex the connected component, those that joints join taken as one.
+// The connected component of each vertex; components that joints join count as one.
 std::vector<int> joined_components(const Scene&);
 
 }  // namespace selvedge

@@ -24,16 +24,16 @@ struct Energies {  // [J]; gravity is -sum m acceleration . x
   double kinetic = 0, gravity = 0, membrane = 0, bending = 0, springs = 0;
   double total() const { return kinetic + gravity + membrane + bending + springs; }
 };
-// x, v: one row a vertex of the cloth. The second form builds the terms anew: for a single state.
+// x, v: one row for each vertex of the cloth. The second form builds the terms for this one call.
 Energies energies(const Scene&, const EnergyTerms&, const Points& x, const Points& v, const Vec3& acceleration);
 Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& acceleration);
 
-// Of the rows' lengths; 0 without rows.
+// The root mean square of the rows' lengths; 0 without rows.
 double root_mean_square(const Points&);
 double largest_row(const Points&);  // the longest one's length; 0 without rows
 
-// Principal stretches of every triangle: columns smallest, largest. 1 is rest, and stands for a triangle
-// without rest area.
+// Principal stretches of every triangle: columns smallest, largest. 1 at rest, and for triangles without
+// rest area.
 Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene&, const Points& x);
 
 // [kg m/s]

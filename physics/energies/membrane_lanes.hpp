@@ -37,8 +37,8 @@ void membrane_energies(std::span<const Material>, std::span<const MembraneElemen
 void membrane_derivatives(std::span<const Material>, std::span<const MembraneElement>, const Points& x, bool hessian,
                           bool psd, MembraneLanes&);
 
-// What isotropic models do of it, from edges on: energies, or everything of the second stage. Without `hessian` no
-// second derivative is written.
+// The part of these two that isotropic models compute, from the edges: energies, or all of the second stage. Without
+// `hessian` no second derivative is written.
 void isotropic_energies(MembraneModel, MembraneLanes&);
 void isotropic_densities(MembraneModel, bool hessian, bool psd, MembraneLanes&);
 

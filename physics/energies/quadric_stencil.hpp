@@ -14,12 +14,12 @@ namespace selvedge {
 // boundaries. Neighbours are the ring, with the vertices across the ring's edges where the ring alone determines no
 // quadric (four neighbours, five close to a conic), and two rings where these do not either, as along boundaries.
 //
-// Triangles whose corners are all pinned do not bend: no part of theirs is in `area`, and at the edge of such a clamp
-// what the neighbourhood shows of K all counts on the part that gives way.
+// Triangles whose corners are all pinned do not bend: their area is not part of `area`, and at the edge of such a clamp
+// the K of the whole neighbourhood counts for the part that can bend.
 //
-// A quadric does not see everything: where neighbours are more than its coefficients, positions could wiggle from
-// vertex to vertex and so lower the energy of a bent sheet. The misfit, which vanishes for every quadric and is of the
-// second order in the mesh otherwise, keeps them from it.
+// A quadric has fewer coefficients than most vertices have neighbours. With its K alone, positions that alternate from
+// vertex to vertex could lower the energy of a bent sheet. The misfit prevents that. It is zero for every quadric, and
+// of the second order in the mesh otherwise.
 struct QuadricStencil {
   int vertex = 0, cloth = 0;
   std::vector<int> nodes;

@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// Springs (drawn.hpp) draw cloth to within a millimetre of its skinned targets: too far where it fits closer to the
-// body than that. So cloth that is near its targets is set to them.
+// Springs (drawn.hpp) draw cloth only to within a millimetre of its skinned targets, which is not enough where it fits
+// closer to the body than that. So cloth that is near its targets is set to them.
 
 // Where bodies and obstacles would take the cloth in a step.
 struct RecoveryTargets {

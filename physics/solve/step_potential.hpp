@@ -13,7 +13,7 @@ namespace selvedge {
 //   E(x) = sum_i m_i |x_i - y_i|^2 / (2 h^2) + m_i a_i |x_i - x0_i|^2 / (2 h) + elastic(x)
 //        + (x - x0) . K0 (x - x0) / (2 h) + sum_t d_t . D_t d_t / (2 h) + contact(x) + friction(x) + added(x),
 // with a the mass damping, K0 the PSD elastic Hessian at x0, each element times its stiffness damping, and D_t the drag
-// of triangle t of which the middle moves d_t past the air. The sums over vertices run over the free ones alone.
+// of triangle t, whose centroid moves by d_t relative to the air. Sums over vertices run over the free ones alone.
 struct StepPotential {
   const Elastic* elastic = nullptr;
   const StepProblem* problem = nullptr;
@@ -46,7 +46,7 @@ std::vector<char> free_vertices(const Scene&, const Eigen::VectorXd& masses);
 void prepare(const Scene&, const Elastic&, const Eigen::VectorXd& masses, const StepProblem&, double slip_speed,
              StepScratch&, StepPotential&);
 
-// One sum a chunk [J], see append_elastic_energies.
+// One sum for each chunk [J], see append_elastic_energies.
 void energies(const StepPotential&, const Points& x, StepScratch&, std::vector<double>& energies);
 
 // Gradient [N], zero where not free; with hessian its pair blocks, and the contacts' stiffness in potential.contacts.
