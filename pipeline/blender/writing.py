@@ -149,7 +149,8 @@ def rounded(value):
 
 
 def bake_folder(garment):
-    """The folder of a garment's bake, that of the first one where several are baked together. Raises Failure where it is to be beside a file that has no place yet."""
+    """The folder of a bake, whose first garment this is. Raises Failure where it is to be beside a file that has no
+    place yet."""
     name = garment.selvedge.folder
     if name.startswith("//") and not bpy.data.filepath:
         raise Failure("the folder of the bake is beside the .blend file, and that is not saved yet", "save it first")
