@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "physics/scene/contact_forces.hpp"
 #include "physics/scene/joint_lists.hpp"
 
 namespace selvedge {
@@ -150,6 +151,12 @@ void put(const PartOfScene& part, const State& state, State& whole) {
   whole.pinched = state.pinched;
   whole.clean = state.clean;
   whole.memory = memory_of_whole(part, state.memory, whole.x);
+}
+
+void put(const PartOfScene& part, const ContactForces& forces, ContactForces& whole) {
+  whole.normal(part.vertices, Eigen::all) = forces.normal;
+  whole.friction(part.vertices, Eigen::all) = forces.friction;
+  whole.pressure(part.vertices) = forces.pressure;
 }
 
 Audit whole_audit(const PartOfScene& part, Audit audit) {

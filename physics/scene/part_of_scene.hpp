@@ -28,6 +28,8 @@ Drive drive_of(const PartOfScene&, const Drive& whole);
 // Writes the part's state after a step into a state of the whole; cloth that is not in the part stays as it is. The
 // whole's memory becomes the part's. Rows that the part lacks are the whole's positions in blocks of positions, else 0.
 void put(const PartOfScene&, const State& part, State& whole);
+// Writes the contact forces on the part's cloth into those of the whole.
+void put(const PartOfScene&, const ContactForces& part, ContactForces& whole);
 // An audit of the part as one of the whole, if the rest of the whole is clean.
 Audit whole_audit(const PartOfScene&, Audit part);
 

@@ -119,7 +119,8 @@ enum class Verdict {
   penetrating  // parts passed through each other, cross, or are inside a body
 };
 
-struct PartOfScene;  // part_of_scene.hpp
+struct PartOfScene;    // part_of_scene.hpp
+struct ContactForces;  // contact_forces.hpp
 
 // Where a substep ended. Every node moved there along a straight line.
 struct SubstepEnd {
@@ -136,7 +137,8 @@ struct StepPath {
   std::shared_ptr<const PartOfScene> part;  // the part of the scene that was stepped, with these nodes; null: all of it
 };
 
-// Each member except `path`, also of the structs inside, has a row in pipeline/reports/report_fields.cpp.
+// Each member except `path` and `contact_forces`, also of the structs inside, has a row in
+// pipeline/reports/report_fields.cpp.
 struct StepReport {  // starts as a failure
   StepStatus status = StepStatus::not_run;
   Reason reason = Reason::none;  // none unless the step is rejected
@@ -165,6 +167,7 @@ struct StepReport {  // starts as a failure
   std::vector<int> switched_off;
   std::optional<Audit> audit;  // of the new state, rounded to float (frame_audits.hpp); absent: not audited
   StepPath path;               // kept until its audit (judge_frame)
+  std::shared_ptr<const ContactForces> contact_forces;  // of each cloth vertex; null: not asked for, or not known
 };
 
 inline void reject(Reason reason, StepReport& report) {
@@ -202,6 +205,7 @@ struct StepperTraits {
   std::optional<double> only_dt = {};  // the only time step that it accepts [s]
   bool may_leave_out_cloths = true;    // a step of some cloths alone gives them the same motion
   bool honours_extras = false;
+  bool reports_contact_forces = false;    // in steps that it solves
   int max_substeps = 1;                   // obstacles that move by more times their own size than this jump
   std::vector<std::string> ignores = {};  // forces that it does not model, by their names in plan_lines (features.hpp)
   bool accepts(double dt) const;          // [s]

@@ -241,7 +241,7 @@ void raise_stiffness(std::vector<ContactTerm>& terms, const Points& x) {
 }
 
 void apply_static_friction(std::span<const ContactTerm> terms, const Eigen::VectorXd& inverse_mass, const Points& x0,
-                           double h, double slip_width, Points& x, const ContactTermOptions& options) {
+                           double h, double slip_width, Points& x, const ContactTermOptions& options, Points* forces) {
   std::vector<double> budget(terms.size(), 0.0);  // tangential impulse times h still allowed [kg m]
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const Vec3 slip = contact_slip(terms[k], x0, x);
@@ -259,8 +259,10 @@ void apply_static_friction(std::span<const ContactTerm> terms, const Eigen::Vect
       const double impulse = std::min(budget[k], length / compliance(term, inverse_mass));
       budget[k] -= impulse;
       for (int i = 0; i < 4; ++i)
-        if (term.nodes[i] >= 0)
+        if (term.nodes[i] >= 0) {
           x.row(term.nodes[i]) -= term.weights[i] * inverse_mass[term.nodes[i]] * impulse / length * slip.transpose();
+          if (forces) forces->row(term.nodes[i]) -= term.weights[i] * impulse / (h * h * length) * slip.transpose();
+        }
     }
 }
 

@@ -75,8 +75,10 @@ void set_load_stiffness(std::vector<ContactTerm>&, const Eigen::VectorXd& invers
 void raise_stiffness(std::vector<ContactTerm>&, const Points& x);
 
 // Reduces the pairs' slip by as much as Coulomb friction allows beyond what the solve has used, to zero where the pair
-// sticks: with the lagged potential alone pairs would creep. Moves x, by Gauss-Seidel over the pairs.
+// sticks: with the lagged potential alone pairs would creep. Moves x, by Gauss-Seidel over the pairs. `forces` gets
+// what that exerts on each vertex, added to its rows [N].
 void apply_static_friction(std::span<const ContactTerm>, const Eigen::VectorXd& inverse_mass, const Points& x0,
-                           double h, double slip_width, Points& x, const ContactTermOptions& = {});
+                           double h, double slip_width, Points& x, const ContactTermOptions& = {},
+                           Points* forces = nullptr);
 
 }  // namespace selvedge

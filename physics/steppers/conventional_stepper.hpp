@@ -29,6 +29,7 @@ struct ConventionalOptions {
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
   ResolveOptions resolve;
+  bool contact_forces = false;        // StepReport::contact_forces
   const char* name = "conventional";  // of the stepper, in reports
 };
 

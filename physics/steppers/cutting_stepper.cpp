@@ -5,6 +5,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/frame/bounded_step.hpp"
 #include "physics/recovery/cut_out.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "physics/scene/part_of_scene.hpp"
 
 namespace selvedge {
@@ -76,6 +77,11 @@ StepReport CuttingStepper::step_rest(const State& from, const Drive& drive, doub
   to.v = (to.x - from.x) / dt;
   put(*part_, end, to);
   report.path.part = part_;
+  if (report.contact_forces) {  // what is cut out touches nothing
+    ContactForces whole = no_contact_forces(to.x.rows());
+    put(*part_, *report.contact_forces, whole);
+    report.contact_forces = std::make_shared<const ContactForces>(std::move(whole));
+  }
   return report;
 }
 

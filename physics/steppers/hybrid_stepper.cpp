@@ -49,6 +49,7 @@ StepperTraits joint_traits(const HybridParts& parts) {
           .only_dt = proposer.only_dt ? proposer.only_dt : parent.only_dt,
           .may_leave_out_cloths = false,
           .honours_extras = false,
+          .reports_contact_forces = parent.reports_contact_forces,
           .max_substeps = parent.max_substeps,
           .ignores = parent.ignores};
 }

@@ -8,14 +8,17 @@
 #include "collision/geometry/box.hpp"
 #include "physics/energies/joints.hpp"
 #include "physics/energies/measures.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "physics/scene/part_of_scene.hpp"
 
 namespace selvedge {
 namespace {
 
+constexpr int force_columns = 7;
 constexpr std::size_t most_kept = 4;  // scenes with some of the cloths that are kept, since resting cloths may wake
 
-constexpr const char *seconds_block = "resting.seconds", *place_block = "resting.place", *air_block = "resting.air";
+constexpr const char *seconds_block = "resting.seconds", *place_block = "resting.place", *air_block = "resting.air",
+                     *forces_block = "resting.forces";
 
 using Chosen = std::vector<char>;  // one per cloth
 
@@ -65,8 +68,8 @@ class RestingStepper final : public Stepper {
   Chosen still_ones(const State& from, const Rest& rest, const Drive& drive) const;
   bool wake(const State& from, const std::vector<Box>& moving, Chosen& resting) const;
   std::vector<Box> moving_boxes(const State& from, const Drive& drive, double dt, const Chosen& resting) const;
-  StepReport step_others(const State& from, const Drive& drive, double dt, const Chosen& resting, const StepExtras&,
-                         State& to);
+  StepReport step_others(const State& from, const Rest& rest, const Drive& drive, double dt, const Chosen& resting,
+                         const StepExtras&, State& to);
   bool comes_near(const State& from, const State& to, Chosen& resting) const;
   Rest rest_after(Rest rest, const State& from, const State& to, const Drive& drive, double dt) const;
   Part& part(const Chosen& resting);
@@ -151,8 +154,9 @@ RestingStepper::Part& RestingStepper::part(const Chosen& resting) {
   return made;
 }
 
-StepReport RestingStepper::step_others(const State& from, const Drive& drive, double dt, const Chosen& resting,
-                                       const StepExtras& extras, State& to) {
+// A step of what does not rest. Contact exerts on the others what it did in their last step.
+StepReport RestingStepper::step_others(const State& from, const Rest& rest, const Drive& drive, double dt,
+                                       const Chosen& resting, const StepExtras& extras, State& to) {
   const int count = static_cast<int>(std::ranges::count(resting, true));
   if (count == 0) return whole_->step(from, drive, dt, to, extras);
   to = from;
@@ -167,6 +171,7 @@ StepReport RestingStepper::step_others(const State& from, const Drive& drive, do
     report.by = traits().name;
     report.resting = count;
     report.audit.emplace();
+    report.contact_forces = rest.forces;
     return report;
   }
   Part& others = part(resting);
@@ -177,6 +182,11 @@ StepReport RestingStepper::step_others(const State& from, const Drive& drive, do
   if (report.status != StepStatus::accepted) return report;
   put(*others.part, end, to);
   report.path.part = others.part;
+  if (report.contact_forces) {
+    ContactForces all = rest.forces ? *rest.forces : unknown_contact_forces(to.x.rows());
+    put(*others.part, *report.contact_forces, all);
+    report.contact_forces = std::make_shared<const ContactForces>(std::move(all));
+  }
   return report;
 }
 
@@ -209,11 +219,26 @@ StepReport RestingStepper::step(const State& from, const Drive& drive, double dt
   Chosen resting = still_ones(from, rest, drive);
   while (any(resting) && wake(from, moving_boxes(from, drive, dt, resting), resting)) {
   }
-  StepReport report = step_others(from, drive, dt, resting, extras, to);
+  StepReport report = step_others(from, rest, drive, dt, resting, extras, to);
   while (report.status == StepStatus::accepted && any(resting) && comes_near(from, to, resting))
-    report = step_others(from, drive, dt, resting, extras, to);
-  if (report.status == StepStatus::accepted) remember(rest_after(rest, from, to, drive, dt), to);
+    report = step_others(from, rest, drive, dt, resting, extras, to);
+  if (report.status != StepStatus::accepted) return report;
+  Rest after = rest_after(rest, from, to, drive, dt);
+  after.forces = report.contact_forces;
+  remember(after, to);
   return report;
+}
+
+// Normal force, friction and pressure of each vertex in a row.
+MemoryRows rows_of_forces(const ContactForces& forces) {
+  MemoryRows rows(forces.normal.rows(), force_columns);
+  rows << forces.normal, forces.friction, forces.pressure;
+  return rows;
+}
+
+std::shared_ptr<const ContactForces> forces_of_rows(const MemoryRows* rows) {
+  if (!rows || rows->cols() != force_columns) return nullptr;
+  return std::make_shared<const ContactForces>(ContactForces{rows->leftCols(3), rows->middleCols(3, 3), rows->col(6)});
 }
 
 }  // namespace
@@ -224,17 +249,22 @@ Rest rest_of(const State& state) {
   const MemoryRows* air = find_rows(state.memory, air_block, 2);
   if (seconds == state.memory.end() || !place || !air) return {};
   const MemoryRows& rows = seconds->rows;
-  return {{rows.data(), rows.data() + rows.size()}, *place, air->row(0).transpose(), air->row(1).transpose()};
+  return {{rows.data(), rows.data() + rows.size()},
+          *place,
+          air->row(0).transpose(),
+          air->row(1).transpose(),
+          forces_of_rows(find_rows(state.memory, forces_block, state.x.rows()))};
 }
 
 void remember(const Rest& rest, State& state) {
   MemoryRows air(2, 3);
   air << rest.wind.transpose(), rest.acceleration.transpose();
   const MemoryRows seconds = Eigen::Map<const Eigen::VectorXd>(rest.seconds.data(), std::ssize(rest.seconds));
-  replace_blocks(
-      "resting",
-      {{seconds_block, seconds, RowsOf::cloths}, {place_block, rest.place, RowsOf::vertices, true}, {air_block, air}},
-      state.memory);
+  Memory blocks{
+      {seconds_block, seconds, RowsOf::cloths}, {place_block, rest.place, RowsOf::vertices, true}, {air_block, air}};
+  if (rest.forces && rest.forces->pressure.allFinite())
+    blocks.push_back({forces_block, rows_of_forces(*rest.forces), RowsOf::vertices});
+  replace_blocks("resting", std::move(blocks), state.memory);
 }
 
 std::unique_ptr<Stepper> make_resting_stepper(const Scene& scene, MakeStepper make, std::unique_ptr<Stepper> whole,

@@ -7,11 +7,12 @@
 
 namespace selvedge {
 
-// How long each cloth has been at rest, and with which wind and gravity.
+// How long each cloth has been at rest, with which wind and gravity, and what contact exerts on it then.
 struct Rest {
   std::vector<double> seconds;  // one per cloth; empty: not known
   Points place;                 // positions, all cloths one after the other
   Vec3 wind = Vec3::Zero(), acceleration = Vec3::Zero();
+  std::shared_ptr<const ContactForces> forces = {};  // of the last step; null: not asked for
 };
 
 // The resting stepper keeps this in State::memory.

@@ -7,6 +7,15 @@
 #include "physics/steppers/count_solve.hpp"
 
 namespace selvedge {
+namespace {
+
+std::vector<double> normal_forces(const std::vector<ContactTerm>& terms) {
+  std::vector<double> forces;
+  for (const ContactTerm& term : terms) forces.push_back(term.normal_force);
+  return forces;
+}
+
+}  // namespace
 
 SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& euler, const SubstepOptions& options,
                            ContactStage& stage)
@@ -61,6 +70,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     const NewtonReport newton = once(problem, x, report);
     if (!newton.finite || newton.stopped) return newton;
     s.nodes.topRows(x.rows()) = x;
+    if (s.measures_forces) s.friction_loads = normal_forces(contacts.terms);
     const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
     if (pass == (s.pinched ? options_.pinched_passes : options_.max_passes)) return newton;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "physics/solve/contact_terms.hpp"
@@ -26,6 +27,9 @@ struct Substep {
   bool pinched = false;               // obstacles leave the cloth no room
   int parts = 1;                      // parts into which it should be cut
   Eigen::VectorXd inverse_mass = {};  // of all nodes, with those of obstacles that give way
+  bool measures_forces = false;       // of contact
+  std::vector<double> friction_loads = {};  // the normal forces that bounded friction in the last solve, if it does [N]
+  std::shared_ptr<const ContactForces> forces = {};  // at its end; null: none, or not measured
 };
 
 // The implicit solves of a substep. Times and counts go into reports. Keeps references to the scene and the stage.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -12,10 +13,12 @@
 
 namespace selvedge {
 
-// The present state of a step: all nodes, the cloth's velocity, and the history for a two-step integrator.
+// The present state of a step: all nodes, the cloth's velocity, the history for a two-step integrator, and what contact
+// exerts on the cloth, if that is measured.
 struct SubstepState {
   Points nodes, v;
   StepHistory history = {};
+  std::shared_ptr<const ContactForces> forces = {};
 };
 
 // Numbers of substeps for a step of dt [s]. edge_length: the mean one [m]; speeds in m/s.

@@ -17,7 +17,8 @@ using PointsF = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 struct TrajectoryInfo {
   std::string program_version, config, stepper;
   double fps = 30;
-  bool self_audited = true;  // false: the file is labelled "self: not audited"
+  bool self_audited = true;     // false: the file is labelled "self: not audited"
+  bool contact_forces = false;  // has those of each frame (StepReport::contact_forces)
   std::vector<std::string> cloth_names;
   std::vector<int> cloth_first_vertex, cloth_first_triangle;  // size cloths + 1
   Triangles triangles;                                        // of all cloths, one after the other

@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/look_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
@@ -74,6 +75,7 @@ struct TrajectoryWriter::Impl {
   TrajectoryInfo info;
   h5::Handle row_type = row_memory_type(), by_type = h5::text_type(by_name_bytes);
   h5::Handle complete, closed, report, by, x, bad, switched_off;
+  h5::Handle contact_normal, contact_friction, contact_pressure;  // missing unless asked for
   std::vector<h5::Handle> obstacles;
   std::vector<PointsF> still;  // positions of each obstacle in the first frame; empty once it has moved
   std::vector<std::string> by_names;
@@ -86,6 +88,7 @@ struct TrajectoryWriter::Impl {
   int code_of(const std::string& by_name);
   void set(const h5::Handle& flag, std::int64_t value);
   void append_obstacle(std::size_t k, const PointsF& at);
+  void append_contact_forces(const StepReport&);
   void append(const Frame&);
   void close();
 };
@@ -103,6 +106,12 @@ void TrajectoryWriter::Impl::make_datasets() {
   report = file.make_growing("frames/report", row_file_type().id(), {}, report_chunk);
   x = file.make_growing("frames/x", H5T_NATIVE_FLOAT, {static_cast<hsize_t>(info.rest.rows()), 3}, 1);
   bad = file.make_growing("frames/bad_triangles", H5T_NATIVE_INT32, {}, bad_chunk);
+  if (info.contact_forces) {
+    const auto vertices = static_cast<hsize_t>(info.rest.rows());
+    contact_normal = file.make_growing("frames/contact_normal", H5T_NATIVE_FLOAT, {vertices, 3}, 1);
+    contact_friction = file.make_growing("frames/contact_friction", H5T_NATIVE_FLOAT, {vertices, 3}, 1);
+    contact_pressure = file.make_growing("frames/contact_pressure", H5T_NATIVE_FLOAT, {vertices}, 1);
+  }
   if (!info.obstacles.empty())
     switched_off = file.make_growing("frames/switched_off", H5T_NATIVE_INT32, {info.obstacles.size()}, report_chunk);
 
@@ -166,10 +175,22 @@ void TrajectoryWriter::Impl::append_obstacle(std::size_t k, const PointsF& at) {
   file.write_rows(obstacles[k].id(), H5T_NATIVE_FLOAT, static_cast<hsize_t>(frames), 1, at.data());
 }
 
+// The forces of a state that no solve has made, such as the initial one, are not a number.
+void TrajectoryWriter::Impl::append_contact_forces(const StepReport& made) {
+  const bool known = made.status == StepStatus::accepted && made.contact_forces;
+  const ContactForces forces = known ? *made.contact_forces : unknown_contact_forces(info.rest.rows());
+  const PointsF normal = forces.normal.cast<float>(), friction = forces.friction.cast<float>();
+  const Eigen::VectorXf pressure = forces.pressure.cast<float>();
+  file.write_rows(contact_normal.id(), H5T_NATIVE_FLOAT, frames, 1, normal.data());
+  file.write_rows(contact_friction.id(), H5T_NATIVE_FLOAT, frames, 1, friction.data());
+  file.write_rows(contact_pressure.id(), H5T_NATIVE_FLOAT, frames, 1, pressure.data());
+}
+
 // The count of full frames is raised after everything else has reached the file, since readers rely on it alone.
 void TrajectoryWriter::Impl::append(const Frame& frame) {
   file.write_rows(x.id(), H5T_NATIVE_FLOAT, frames, 1, frame.x.data());
   for (std::size_t k = 0; k < obstacles.size(); ++k) append_obstacle(k, frame.obstacles[k]);
+  if (info.contact_forces) append_contact_forces(frame.report);
   file.write_rows(bad.id(), H5T_NATIVE_INT32, bad_length, frame.bad_triangles.size(), frame.bad_triangles.data());
   std::vector<std::int32_t> off = frame.report.switched_off;
   off.resize(obstacles.size(), 0);
@@ -184,7 +205,9 @@ void TrajectoryWriter::Impl::append(const Frame& frame) {
 
 void TrajectoryWriter::Impl::close() {
   set(closed, 1);
-  for (h5::Handle* handle : {&complete, &closed, &report, &by, &x, &bad, &switched_off}) handle->reset();
+  for (h5::Handle* handle : {&complete, &closed, &report, &by, &x, &bad, &switched_off, &contact_normal,
+                             &contact_friction, &contact_pressure})
+    handle->reset();
   obstacles.clear();
   file.close();
 }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "pipeline/formats/look_hdf5.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
@@ -115,13 +116,27 @@ struct TrajectoryReader::Impl {
   h5::File file;
   TrajectoryInfo info;
   h5::Handle row_type = row_memory_type(), report, x, bad;
-  h5::Handle switched_off;  // missing in older files
+  h5::Handle switched_off;                                        // missing in older files
+  h5::Handle contact_normal, contact_friction, contact_pressure;  // missing where nobody asked for them
   std::vector<h5::Handle> obstacles;
   std::vector<std::string> by_names;
   int frames = 0;
   bool closed = false;
 
   explicit Impl(const std::filesystem::path& path) : file(h5::File::open(path)) {}
+  h5::Handle open_frames(const std::string& name, const std::vector<hsize_t>& row_shape) const {
+    if (rows_of(file, name, row_shape, true) < static_cast<hsize_t>(frames))
+      throw_damaged(file, name + " has fewer rows than there are frames");
+    return file.open_dataset(name);
+  }
+  ContactForces read_contact_forces(int row) const {
+    const Eigen::Index vertices = info.rest.rows();
+    Eigen::VectorXf pressure(vertices);
+    file.read_rows(contact_pressure.id(), H5T_NATIVE_FLOAT, {static_cast<hsize_t>(vertices)}, static_cast<hsize_t>(row),
+                   1, pressure.data());
+    return {read_points(contact_normal, row, vertices).cast<double>(),
+            read_points(contact_friction, row, vertices).cast<double>(), pressure.cast<double>()};
+  }
   PointsF read_points(const h5::Handle& dataset, int row, Eigen::Index count) const {
     PointsF points(count, 3);
     file.read_rows(dataset.id(), H5T_NATIVE_FLOAT, {static_cast<hsize_t>(count), 3}, static_cast<hsize_t>(row), 1,
@@ -154,10 +169,14 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) {
   r.report = r.file.open_dataset("frames/report");
   r.x = r.file.open_dataset("frames/x");
   r.bad = r.file.open_dataset("frames/bad_triangles");
-  if (r.file.has("frames/switched_off")) {
-    if (rows_of(r.file, "frames/switched_off", {r.info.obstacles.size()}, true) < static_cast<hsize_t>(frames))
-      throw_damaged(r.file, "frames/switched_off has fewer rows than there are frames");
-    r.switched_off = r.file.open_dataset("frames/switched_off");
+  if (r.file.has("frames/switched_off"))
+    r.switched_off = r.open_frames("frames/switched_off", {r.info.obstacles.size()});
+  r.info.contact_forces = r.file.has("frames/contact_normal");
+  if (r.info.contact_forces) {
+    const auto vertices = static_cast<hsize_t>(r.info.rest.rows());
+    r.contact_normal = r.open_frames("frames/contact_normal", {vertices, 3});
+    r.contact_friction = r.open_frames("frames/contact_friction", {vertices, 3});
+    r.contact_pressure = r.open_frames("frames/contact_pressure", {vertices});
   }
   for (std::size_t k = 0; k < r.info.obstacles.size(); ++k)
     r.obstacles.push_back(r.file.open_dataset("obstacles/" + std::to_string(k) + "/x"));
@@ -198,6 +217,8 @@ Frame TrajectoryReader::frame(int index) const {
     r.file.read_rows(r.switched_off.id(), H5T_NATIVE_INT32, {off.size()}, static_cast<hsize_t>(index), 1, off.data());
     if (std::ranges::all_of(off, [](int count) { return count == 0; })) off.clear();
   }
+  if (r.info.contact_forces)
+    frame.report.contact_forces = std::make_shared<const ContactForces>(r.read_contact_forces(index));
   if (row.bad_count() < 0 || row.bad_count() > r.info.triangles.rows() || row.bad_begin() < 0)
     throw_damaged(r.file, "frame " + std::to_string(index) + " marks more triangles than there are");
   frame.bad_triangles.resize(static_cast<std::size_t>(row.bad_count()));

@@ -46,6 +46,16 @@ nb::dict report_of(const SceneObject& scene) {
   return scene.report() ? dict_of(report_fields(), *scene.report()) : nb::dict();
 }
 
+nb::object contact_forces_of(SceneObject& scene) {
+  const ContactForces* forces = scene.contact_forces();
+  if (!forces) return nb::none();
+  nb::dict arrays;
+  arrays["normal"] = copy_of(forces->normal);
+  arrays["friction"] = copy_of(forces->friction);
+  arrays["pressure"] = copy_of(forces->pressure);
+  return arrays;
+}
+
 // A scene's frame, made beside those of others, or what was thrown.
 struct BesideOthers {
   std::optional<SteppedFrame> frame;
@@ -101,9 +111,9 @@ void bind_scene(nb::module_& module) {
            "overrides"_a = std::vector<std::string>{}, "kinds"_a = nb::dict(),
            "A scene file (YAML). overrides: key=value with dotted keys. kinds: names that run.stepper may have beside "
            "the known ones, each with its subclass of Stepper.")
-      .def(nb::init<const nb::object&>(), nb::kw_only(), "stepper"_a = nb::none(),
+      .def(nb::init<const nb::object&, bool>(), nb::kw_only(), "stepper"_a = nb::none(), "contact_forces"_a = false,
            "A scene without anything, at 30 frames a second, under gravity. stepper: a subclass of Stepper; None: the "
-           "conventional one.")
+           "conventional one. contact_forces: whether steps find them.")
       .def("add_cloth", &SceneObject::add_cloth_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = "cloth",
            "density"_a = nb::none(), "youngs_modulus"_a = nb::none(), "poisson"_a = nb::none(),
            "bending"_a = nb::none(), "material"_a = nb::none(), "pins"_a = nb::none(),
@@ -169,6 +179,10 @@ void bind_scene(nb::module_& module) {
       .def_prop_ro("pairs", &SceneObject::pairs, "Intersecting pairs of triangles after the last step; -1: not known.")
       .def_prop_ro("report", &report_of,
                    "What came of the last step, accepted or rejected, by the names of docs/files.md; empty before one.")
+      .def_prop_ro("contact_forces", &contact_forces_of,
+                   "What contact exerts on each vertex in the present state (docs/files.md#contact-forces), where that "
+                   "was asked for: normal and friction, n x 3 [N], and pressure, n [Pa], copies. None: not known, as "
+                   "before the first step.")
       .def_prop_ro("fps", &SceneObject::fps, "Frames a second.")
       .def_prop_ro("frames", &SceneObject::frames, "That the scene file asks for; 0 of a scene from arrays.");
   module.def("step", &step_scenes, "scenes"_a,

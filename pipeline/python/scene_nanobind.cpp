@@ -57,14 +57,24 @@ Points stacked(const std::vector<ClothPart>& parts, Points ClothPart::*rows) {
   return all;
 }
 
+ConventionalOptions options_with(bool contact_forces) {
+  ConventionalOptions options;
+  options.contact_forces = contact_forces;
+  return options;
+}
+
 }  // namespace
 
 SceneTurn::SceneTurn(std::atomic<bool>& taken) : taken_(taken) {
   if (taken.exchange(true)) throw Error("is being stepped", "scene", "let one thread at a time work on a scene");
 }
 
-SceneObject::SceneObject(const nb::object& stepper)
-    : make_(stepper.is_none() ? conventional_maker() : python_maker("python", stepper, held_)) {
+SceneObject::SceneObject(const nb::object& stepper, bool contact_forces)
+    : make_(stepper.is_none() ? conventional_maker(options_with(contact_forces))
+                              : python_maker("python", stepper, held_)) {
+  if (contact_forces && !stepper.is_none())
+    throw Error("contact forces are not known of steps that Python makes", "scene: contact_forces",
+                "leave it out, or leave the stepper out");
   setup_.run.fps = 30;
 }
 
@@ -97,6 +107,7 @@ bool SceneObject::keep(SteppedFrame made) {
   const bool accepted = report_->status == StepStatus::accepted;
   if (accepted) {
     take_over(std::move(made.state));
+    contact_forces_ = report_->contact_forces;
     pairs_ = report_->collision.pairs_after;
   }
   if (recording_)
@@ -122,7 +133,8 @@ void SceneObject::record(const std::filesystem::path& folder) {
   make_folder(folder);
   auto lock = std::make_unique<FolderLock>(folder);
   remove_results(folder);
-  const TrajectoryInfo info = trajectory_info(setup_.scene, setup_.config, stepper_->traits().name, setup_.run.fps);
+  TrajectoryInfo info = trajectory_info(setup_.scene, setup_.config, stepper_->traits().name, setup_.run.fps);
+  info.contact_forces = stepper_->traits().reports_contact_forces;
   recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", info),
                                  energy_terms(setup_.scene, stepper_->traits())});
   recording_->writer.append(record_initial(setup_.scene, recording_->terms, state_, setup_.drive_at(state_.time)));
@@ -153,12 +165,21 @@ void SceneObject::restore(const std::filesystem::path& file) {
   if (setup_.file.empty()) obstacles_ = saved.state.obstacles;
   take_over(std::move(saved.state));
   report_.reset();
+  contact_forces_.reset();
   pairs_ = -1;
 }
 
 State& SceneObject::state() {
   ensure_begun();
   return state_;
+}
+
+const ContactForces* SceneObject::contact_forces() {
+  ensure_begun();
+  if (!stepper_->traits().reports_contact_forces)
+    throw Error("contact forces were not asked for, or its stepper computes none", "scene: contact_forces",
+                "make it with contact_forces=True, or with run.contact_forces=true");
+  return contact_forces_.get();
 }
 
 std::string SceneObject::described() const {

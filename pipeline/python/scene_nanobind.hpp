@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/frame/frame_audits.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
@@ -44,7 +45,7 @@ struct SteppedFrame {
 // selvedge.Scene: a scene with its state and stepper, from arrays or from a scene file.
 class SceneObject {
  public:
-  explicit SceneObject(const nanobind::object& stepper);
+  SceneObject(const nanobind::object& stepper, bool contact_forces);
   SceneObject(const std::filesystem::path& file, const std::vector<std::string>& overrides,
               const nanobind::dict& kinds);
   SceneObject(const SceneObject&) = delete;
@@ -84,6 +85,8 @@ class SceneObject {
   State& state();
   int pairs() const { return pairs_; }
   const std::optional<StepReport>& report() const { return report_; }
+  // Of the present state; null: not known. Throws Error if they were not asked for.
+  const ContactForces* contact_forces();
   double fps() const { return setup_.run.fps; }
   int frames() const { return setup_.run.frames; }
   // Where obstacles are, also before the first step.
@@ -123,6 +126,7 @@ class SceneObject {
   std::unique_ptr<Stepper> stepper_;
   FrameAudits audits_{setup_.scene};
   std::optional<StepReport> report_;  // of the last step
+  std::shared_ptr<const ContactForces> contact_forces_;
   int pairs_ = -1;
   std::unique_ptr<Recording> recording_;
   std::atomic<bool> turn_ = false;  // taken

@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
@@ -15,14 +16,16 @@ namespace {
 namespace nb = nanobind;
 using namespace nb::literals;
 
-// Frames x vertices x 3, made by Python.
-using FloatFrames = nb::ndarray<float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+// Frames x vertices x 3, or 1 of numbers, made by Python.
+using FloatFrames = nb::ndarray<float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using FloatRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 nb::dict contents(const std::filesystem::path& file) {
   const TrajectoryReader reader(trajectory_file(file));
   const TrajectoryInfo& info = reader.info();
   nb::dict result;
   result["frame_count"] = reader.frame_count();
+  result["contact_forces"] = info.contact_forces;
   result["fps"] = info.fps;
   result["triangles"] = copy_of(info.triangles);
   result["rest"] = copy_of(info.rest);
@@ -43,15 +46,24 @@ nb::dict contents(const std::filesystem::path& file) {
   return result;
 }
 
-// The array's k-th frame, which must have room for these points.
-void put(const PointsF& points, std::size_t k, const FloatFrames& frames) {
-  if (k >= frames.shape(0) || static_cast<Eigen::Index>(frames.shape(1)) != points.rows())
+// The array's k-th frame, which must have room for these rows.
+void put(const FloatRows& rows, std::size_t k, const FloatFrames& frames) {
+  if (k >= frames.shape(0) || static_cast<Eigen::Index>(frames.shape(1)) != rows.rows() ||
+      static_cast<Eigen::Index>(frames.shape(2)) != rows.cols())
     throw Error("has no room for a frame", "trajectory_frames", "give frames x vertices x 3");
-  Eigen::Map<PointsF>(frames.data() + k * frames.shape(1) * 3, points.rows(), 3) = points;
+  Eigen::Map<FloatRows>(frames.data() + k * frames.shape(1) * frames.shape(2), rows.rows(), rows.cols()) = rows;
+}
+
+// Into three arrays: of normal forces, friction, pressure.
+void put(const ContactForces& forces, std::size_t k, const std::vector<FloatFrames>& arrays) {
+  if (arrays.size() != 3) throw Error("has no room for contact forces", "trajectory_frames", "give three arrays");
+  put(forces.normal.cast<float>(), k, arrays[0]);
+  put(forces.friction.cast<float>(), k, arrays[1]);
+  put(forces.pressure.cast<float>(), k, arrays[2]);
 }
 
 nb::list fill_frames(const std::filesystem::path& file, const std::vector<int>& numbers, const FloatFrames& x,
-                     const std::vector<FloatFrames>& obstacles) {
+                     const std::vector<FloatFrames>& obstacles, const std::vector<FloatFrames>& forces) {
   const TrajectoryReader reader(trajectory_file(file));
   nb::list reports;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -60,6 +72,7 @@ nb::list fill_frames(const std::filesystem::path& file, const std::vector<int>& 
     put(frame.x, k, x);
     for (std::size_t o = 0; o < obstacles.size() && o < frame.obstacles.size(); ++o)
       if (k < obstacles[o].shape(0)) put(frame.obstacles[o], k, obstacles[o]);  // a still one has one
+    if (!forces.empty() && frame.report.contact_forces) put(*frame.report.contact_forces, k, forces);
     reports.append(dict_of(frame_fields(), frame));
   }
   return reports;
@@ -71,9 +84,10 @@ void bind_trajectories(nb::module_& module) {
   module.def("trajectory_contents", &contents, "file"_a,
              "What selvedge.read_trajectory says of a run before its frames are read.");
   module.def(
-      "trajectory_frames", &fill_frames, "file"_a, "numbers"_a, "x"_a, "obstacles"_a,
+      "trajectory_frames", &fill_frames, "file"_a, "numbers"_a, "x"_a, "obstacles"_a, "forces"_a,
       "Reads frames of a run into arrays, frames x vertices x 3 of float32: of all cloths, and of each obstacle, "
-      "where one frame is enough of a still one. Returns the frames' reports.");
+      "where one frame is enough of a still one. forces: empty, or the arrays of normal forces, of friction and, "
+      "frames x vertices x 1, of pressure. Returns the frames' reports.");
 }
 
 }  // namespace selvedge

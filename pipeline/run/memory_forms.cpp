@@ -33,6 +33,7 @@ constexpr std::array known_forms{
     MemoryForm{.name = "resting.seconds", .rows_of = RowsOf::cloths, .columns = 1, .most = 1e9},
     MemoryForm{.name = "resting.place", .rows_of = RowsOf::vertices, .positions = true},
     MemoryForm{.name = "resting.air", .rows = 2},
+    MemoryForm{.name = "resting.forces", .rows_of = RowsOf::vertices, .columns = 7, .most = 1e12},
     // physics/steppers/proposal_trust.cpp
     MemoryForm{.name = "hybrid.trust", .whole = true},
     // learned/steppers/learned_state.cpp

@@ -149,6 +149,7 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   summary.inputs_hash = hash_of_inputs(inputs);
   TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
   info.looks = setup.looks;
+  info.contact_forces = stepper.traits().reports_contact_forces;
   Recorder recorder{
       setup, request, summary, inputs, TrajectoryWriter(first_file, info), energy_terms(setup.scene, stepper.traits())};
   if (start) {

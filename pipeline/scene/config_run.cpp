@@ -193,6 +193,15 @@ const OptionRows<ConventionalOptions>& substep_count_options() {
   return rows;
 }
 
+const OptionRows<ConventionalOptions>& contact_force_options() {
+  using O = ConventionalOptions;
+  static const OptionRows<O> rows{
+      flag("contact_forces", &O::contact_forces,
+           "True: the trajectory has what contact exerts on each vertex (docs/files.md). Steppers "
+           "without a solve have none.")};
+  return rows;
+}
+
 }  // namespace
 
 const Options<RunOptions>& run_options() {
@@ -204,7 +213,7 @@ const Options<RunOptions>& run_options() {
                     word("quality", &O::quality, quality_names(),
                          "Preset for other keys, from fast to accurate (docs/benchmarks.md). A key that the file gives "
                          "keeps its value.")} +
-          inside(&O::conventional, substep_count_options()) +
+          inside(&O::conventional, substep_count_options() + contact_force_options()) +
           OptionRows<O>{word("stepper", &O::stepper, known_kinds().names(), "Method that makes the frames."),
                         flag("rest", &O::rest, "True: a resting cloth is not simulated while nothing near it moves."),
                         section(&O::resting, resting_options(), "When a cloth counts as resting."),

@@ -114,6 +114,8 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
 std::vector<std::string> run_warnings(const Setup& setup, const StepperTraits& traits) {
   std::vector<std::string> warnings = scene_warnings(setup);
   for (const PlanLine& line : ignored_lines(setup.scene, traits)) warnings.push_back(line.feature + ": " + line.why);
+  if (setup.run.conventional.contact_forces && !traits.reports_contact_forces)
+    warnings.push_back("run.contact_forces: the stepper `" + traits.name + "` computes none");
   return warnings;
 }
 

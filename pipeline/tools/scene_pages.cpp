@@ -47,7 +47,7 @@ const std::vector<Task>& tasks() {
         {"wind_key", "time velocity"},
         {"contact", "thickness friction self_friction self"}}},
       {"The run",
-       {{"run", "frames fps quality substeps stepper learned hybrid refu"},
+       {{"run", "frames fps quality substeps stepper contact_forces learned hybrid refu"},
         {"learned", "weights device"},
         {"hybrid", "mode stop_when_slow"},
         {"refu", "on alpha weights"},

@@ -70,14 +70,15 @@ function colourByStretch(geometry, metric, top, table) {
 }
 
 // Vertex colours by a map's values, from its low to its high; grey where there is none.
-function colourByMap(geometry, map, table) {
+function colourByMap(geometry, map, drawn, table) {
+  const vertices = geometry.attributes.position.count, valueOf = map.at(drawn);
   if (!geometry.attributes.color)
-    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * map.values.length), 3));
+    geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * vertices), 3));
   const colours = geometry.attributes.color.array;
-  map.values.forEach((value, v) => {
-    const at = Math.min(1, Math.max(0, (value - map.low) / (map.high - map.low || 1)));
+  for (let v = 0; v < vertices; ++v) {
+    const value = valueOf(v), at = Math.min(1, Math.max(0, (value - map.low) / (map.high - map.low || 1)));
     for (let k = 0; k < 3; ++k) colours[3 * v + k] = isFinite(value) ? table[3 * Math.round(255 * at) + k] : 0.4;
-  });
+  }
   geometry.attributes.color.needsUpdate = true;
 }
 
@@ -229,8 +230,9 @@ function makeFigure(run) {
   }
   function show(next, look) {
     if (next !== drawn) moveTo(next);
-    const map = run.maps[look.map], coloured = map || look.strain;
-    if (map) colourByMap(geometry, map, table);
+    const map = mapOf(run, look), coloured = map || look.strain;
+    if (map)
+      colourByMap(geometry, map, next, table);
     else if (look.strain) colourByStretch(geometry, run.metric, look.strainTop, table);
     sides.forEach((mesh, s) => mesh.material.forEach((material, c) => {
       const mode = coloured ? THREE.VertexColors : THREE.NoColors;

@@ -95,14 +95,36 @@ function unpack({levels, step, absent}, frame, out) {
   for (const v of absent[frame] || []) out.fill(NaN, 3 * v, 3 * v + 3);
 }
 
+// Gives a map `at`: the number of each vertex in a drawn frame, NaN for none. A map that changes has bytes of every
+// drawn frame, 0 to 254 from 0 to its top, and 255 for none.
+function openMap(map, vertices) {
+  if (!map.changes) {
+    const values = floats(map.values);
+    map.at = () => (v) => values[v];
+    return;
+  }
+  const levels = bytesOf(map.values), step = map.high / 254;
+  map.at = (drawn) => (v) => {
+    const level = levels[drawn * vertices + v];
+    return level === 255 ? NaN : level * step;
+  };
+}
+
+// Maps of a name that change have one scale in all runs.
+function shareScales(runs) {
+  const maps = runs.flatMap((run) => run.maps.filter((map) => map.changes));
+  const tops = maps.map((map) => Math.max(...maps.filter((other) => other.name === map.name).map(({high}) => high)));
+  maps.forEach((map, m) => {
+    map.high = tops[m];
+  });
+}
+
 function loadRuns() {
   const data = JSON.parse(document.getElementById("runs").textContent);
   data.runs.forEach((run) => {
     run.triangles = indices(run.triangleArray);
     run.metric = floats(run.metric);
-    run.maps.forEach((map) => {
-      map.values = floats(map.values);
-    });
+    run.maps.forEach((map) => openMap(map, run.vertices));
     run.frames = run.series.time.length;
     run.end = run.series.time[run.frames - 1];
     run.boxes = boxesOf(openPositions(run.positions, run.vertices));
@@ -112,6 +134,7 @@ function loadRuns() {
     });
     run.pairs = run.series.self_pairs.map((pairs, f) => pairs + run.series.obstacle_pairs[f]);
   });
+  shareScales(data.runs);
   document.querySelectorAll("script[type='text/plain']").forEach((array) => array.remove());
   return data;
 }

@@ -1,4 +1,11 @@
-// Colours by numbers that a report gave to the vertices, their legend, and the report's table.
+// Colours by numbers of the vertices, which a report gave or which a run has in each frame, their legend, and the
+// report's table.
+
+// Whether a report gave the maps. They take the place of the strain, and are shown at first.
+const isReport = (runs) => runs[0].maps.some((map) => !map.changes);
+
+// The map that colours a run; none where the strain does.
+const mapOf = (run, look) => (look.strain ? undefined : run.maps[look.map]);
 
 function bindMaps(page) {
   const {look, runs} = page, strain = element("strain");
@@ -6,23 +13,25 @@ function bindMaps(page) {
     const button = document.createElement("button");
     button.textContent = map.name;
     button.title = `Colour by ${map.name}`;
-    button.addEventListener("click", () => {
-      look.map = look.map === m ? -1 : m;
-      show();
+    button.addEventListener('click', () => {
+      const shown = mapOf(runs[0], look) === map;
+      look.map = shown ? -1 : m;
+      look.strain = false;
       page.redraw();
     });
     strain.before(button);
     return button;
   });
-  function show() {
-    buttons.forEach((button, m) => button.setAttribute("aria-pressed", look.map === m));
-  }
-  strain.hidden = buttons.length > 0;
-  show();
+  page.showMaps = () => {
+    buttons.forEach((button, m) => button.setAttribute('aria-pressed', mapOf(runs[0], look) === runs[0].maps[m]));
+    strain.setAttribute('aria-pressed', look.strain);
+  };
+  strain.hidden = isReport(runs);
+  page.showMaps();
 }
 
 function showLegend(run, look) {
-  const map = run.maps[look.map];
+  const map = mapOf(run, look);
   element("legend").hidden = !map && !look.strain;
   element("legend-title").textContent = map ? `${map.name} [${map.unit}]` : "principal stretch";
   element("legend-low").textContent = map ? short(map.low) : "1.00";

@@ -22,12 +22,13 @@ from ._selvedge import (
 from .alembic import AlembicMesh, export_alembic, read_alembic, write_alembic
 from .runs import Page, export, simulate, view
 from .steppers import SceneArrays, StepDrive, Stepper, StepStart
-from .trajectories import RecordedObstacle, Trajectory, read_trajectory
+from .trajectories import RecordedForces, RecordedObstacle, Trajectory, read_trajectory
 
 __all__ = [
     "AlembicMesh",
     "Error",
     "Page",
+    "RecordedForces",
     "RecordedObstacle",
     "Scene",
     "SceneArrays",

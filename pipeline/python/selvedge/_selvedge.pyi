@@ -63,8 +63,14 @@ class ContentsObstacle(TypedDict):
     vertex_count: int
     moving: bool
 
+class ContactForces(TypedDict):
+    normal: Numbers
+    friction: Numbers
+    pressure: Numbers
+
 class Contents(TypedDict):
     frame_count: int
+    contact_forces: bool
     fps: float
     triangles: Indices
     rest: Numbers
@@ -97,9 +103,9 @@ class Scene:
         """A scene file (YAML). overrides: key=value with dotted keys. kinds: names that run.stepper may have beside the
         known ones, each with its subclass of Stepper."""
     @overload
-    def __init__(self, *, stepper: type[Stepper] | None = None) -> None:
+    def __init__(self, *, stepper: type[Stepper] | None = None, contact_forces: bool = False) -> None:
         """A scene without anything, at 30 frames a second, under gravity. stepper: a subclass of Stepper; None: the
-        conventional one."""
+        conventional one. contact_forces: whether steps find them."""
     def add_cloth(
         self,
         x: npt.ArrayLike,
@@ -208,6 +214,11 @@ class Scene:
     def report(self) -> Report:
         """What came of the last step, accepted or rejected, by the names of docs/files.md; empty before one."""
     @property
+    def contact_forces(self) -> ContactForces | None:
+        """What contact exerts on each vertex in the present state (docs/files.md#contact-forces), where that was asked
+        for: normal and friction, n x 3 [N], and pressure, n [Pa], copies. None: not known, as before the first
+        step."""
+    @property
     def fps(self) -> float:
         """Frames a second."""
     @property
@@ -293,7 +304,12 @@ def page_of(runs: Sequence[Path], limit: int) -> str:
 def trajectory_contents(file: Path) -> Contents:
     """What selvedge.read_trajectory says of a run before its frames are read."""
 def trajectory_frames(
-    file: Path, numbers: Sequence[int], x: npt.NDArray[np.float32], obstacles: Sequence[npt.NDArray[np.float32]]
+    file: Path,
+    numbers: Sequence[int],
+    x: npt.NDArray[np.float32],
+    obstacles: Sequence[npt.NDArray[np.float32]],
+    forces: Sequence[npt.NDArray[np.float32]],
 ) -> list[Report]:
     """Reads frames of a run into arrays, frames x vertices x 3 of float32: of all cloths, and of each obstacle, where
-    one frame is enough of a still one. Returns the frames' reports."""
+    one frame is enough of a still one. forces: empty, or the arrays of normal forces, of friction and, frames x
+    vertices x 1, of pressure. Returns the frames' reports."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
@@ -25,6 +26,14 @@ class RecordedObstacle(TypedDict):
     x: Floats  # frames x k x 3 [m], to be read only; of an obstacle that never moves a view of one frame
 
 
+class RecordedForces(TypedDict):
+    """What contact exerts on each vertex of a run (docs/files.md#contact-forces); NaN where it is not known."""
+
+    normal: Floats  # frames x n x 3 [N]
+    friction: Floats  # frames x n x 3 [N]
+    pressure: Floats  # frames x n [Pa]
+
+
 if TYPE_CHECKING:
 
     class Trajectory(TypedDict):
@@ -37,6 +46,7 @@ if TYPE_CHECKING:
         rest: npt.NDArray[np.float64]
         cloths: list[tuple[str, int, int]]
         pins: npt.NDArray[np.int32]
+        contact_forces: RecordedForces | None
         obstacles: list[RecordedObstacle]
         reports: list[Report]
 
@@ -58,11 +68,13 @@ else:
 def read_trajectory(file: Path, frames: slice | None = None, into: Path | None = None) -> Trajectory:
     """A run: its run.h5, or the folder of one; it may still be growing. frames: which, as slice(0, None, 10); None:
     all. into: a file (.npy) that becomes the array x, mapped into memory, for runs that are larger than the memory;
-    run.h5 itself cannot be mapped, since it keeps every frame in a place of its own.
+    run.h5 itself cannot be mapped, since it keeps every frame in a place of its own. Contact forces are then mapped into
+    files beside it: of x.npy x_contact_normal.npy, x_contact_friction.npy and x_contact_pressure.npy.
 
     Returns x, positions, frames x n x 3 of float32 [m]; time, of each frame [s]; fps; triangles, m x 3; rest, n x 3
-    [m]; cloths, of each its name, its first vertex and the end of its vertices; pins, vertices; obstacles, of each
-    name, triangles and x, frames x k x 3 [m]; reports, a dict a frame by the names of docs/files.md."""
+    [m]; cloths, of each its name, its first vertex and the end of its vertices; pins, vertices; contact_forces,
+    where the run has them (run.contact_forces), else None: normal and friction, frames x n x 3 [N], and pressure,
+    frames x n [Pa], of float32, not a number where they are not known; obstacles, of each name, triangles and x, frames x k x 3 [m]; reports, a dict a frame by the names of docs/files.md."""
     contents = trajectory_contents(file)
     count = contents["frame_count"]
     numbers = list(range(count)) if frames is None else list(range(count))[frames]
@@ -71,7 +83,14 @@ def read_trajectory(file: Path, frames: slice | None = None, into: Path | None =
         np.empty((len(x) if body["moving"] else min(len(x), 1), body["vertex_count"], 3), dtype=np.float32)
         for body in contents["obstacles"]
     ]
-    reports = trajectory_frames(file, numbers, x, bodies)
+    forces = _forces(into, x.shape) if contents["contact_forces"] else None
+    reports = trajectory_frames(
+        file,
+        numbers,
+        x,
+        bodies,
+        [forces["normal"], forces["friction"], forces["pressure"][:, :, np.newaxis]] if forces else [],
+    )
     obstacles: list[RecordedObstacle] = [
         {"name": body["name"], "triangles": body["triangles"], "x": np.broadcast_to(own, (len(x), *own.shape[1:]))}
         for body, own in zip(contents["obstacles"], bodies)
@@ -84,6 +103,7 @@ def read_trajectory(file: Path, frames: slice | None = None, into: Path | None =
         rest=contents["rest"],
         cloths=contents["cloths"],
         pins=contents["pins"],
+        contact_forces=forces,
         obstacles=obstacles,
         reports=reports,
     )
@@ -93,7 +113,17 @@ def _counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _array(into: Path | None, shape: tuple[int, int, int]) -> Floats:
+def _forces(into: Path | None, shape: tuple[int, ...]) -> RecordedForces:
+    frames, vertices, _ = shape
+
+    def array(name: str, *row: int) -> Floats:
+        beside = None if into is None else pathlib.Path(into).with_name(f"{pathlib.Path(into).stem}_contact_{name}.npy")
+        return _array(beside, (frames, vertices, *row))
+
+    return {"normal": array("normal", 3), "friction": array("friction", 3), "pressure": array("pressure")}
+
+
+def _array(into: Path | None, shape: tuple[int, ...]) -> Floats:
     if into is None:
         return np.empty(shape, dtype=np.float32)
     if 0 in shape:

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/formats/trajectory_row.hpp"
@@ -97,6 +98,41 @@ TEST_CASE("a still obstacle is stored where it was in every frame") {
     for (int k = 0; k <= i; ++k) require_same(reader.frame(k), pushed(k));
   }
   CHECK(h5::File::open(folder.path / "run.h5").shape_of("obstacles/0/x", 3)[0] == 6);
+}
+
+TEST_CASE("contact forces are stored where they are asked for, and are no number where they are not known") {
+  const fake::Folder folder("contact_forces");
+  const Scene scene = fake::scene();
+  const Eigen::Index n = scene.rest.rows();
+  TrajectoryInfo info = trajectory_info(scene, "", "conventional", 30);
+  Frame frame = fake::frame(scene, 0);
+  frame.report.contact_forces = std::make_shared<const ContactForces>(ContactForces{
+      Points::Constant(n, 3, 0.25), Points::Constant(n, 3, -0.5), Eigen::VectorXd::LinSpaced(n, 0, n - 1.0)});
+  const auto written = [&](bool asked) {
+    info.contact_forces = asked;
+    TrajectoryWriter writer(folder.path / "run.h5", info);
+    writer.append(fake::frame(scene, 0));
+    writer.append(frame);
+    Frame rejected = frame;
+    rejected.report.status = StepStatus::rejected;
+    writer.append(rejected);
+    writer.close();
+    return TrajectoryReader(folder.path / "run.h5");
+  };
+  const TrajectoryReader with = written(true);
+  REQUIRE(with.info().contact_forces);
+  for (const int unknown : {0, 2}) {
+    CHECK(with.frame(unknown).report.contact_forces->normal.array().isNaN().all());
+    CHECK(with.frame(unknown).report.contact_forces->pressure.array().isNaN().all());
+  }
+  const Frame read = with.frame(1);
+  CHECK(read.report.contact_forces->normal == frame.report.contact_forces->normal);
+  CHECK(read.report.contact_forces->friction == frame.report.contact_forces->friction);
+  CHECK(read.report.contact_forces->pressure == frame.report.contact_forces->pressure);
+  const TrajectoryReader without = written(false);
+  CHECK_FALSE(without.info().contact_forces);
+  CHECK_FALSE(without.frame(1).report.contact_forces);
+  CHECK_FALSE(h5::File::open(folder.path / "run.h5").has("frames/contact_normal"));
 }
 
 // Files that HDF5 has no objection to, with one field of another shape or of absurd values.

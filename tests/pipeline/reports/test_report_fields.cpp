@@ -42,8 +42,9 @@ template <class F>
 void each_member(StepReport& all, const F& f) {
   auto& [status, reason, doubts, by, fell_back, verdict, substeps, resting, iterations, untangling, out_of_newton,
          out_of_untangling, out_of_response, out_of_proofs, linear_iterations, residual, unsolved, seconds, counts,
-         collision, switched_off, audit, path] = all;
-  static_cast<void>(path);  // until its audit: of no frame that is reported
+         collision, switched_off, audit, path, contact_forces] = all;
+  static_cast<void>(path);            // until its audit: of no frame that is reported
+  static_cast<void>(contact_forces);  // arrays of the trajectory, where they are asked for
   f(status), f(reason), f(by), f(verdict), f(switched_off), f(audit);
   for (bool* one : {&fell_back, &out_of_newton, &out_of_untangling, &out_of_response, &out_of_proofs}) f(*one);
   for (int* one : {&substeps, &resting, &iterations, &untangling, &linear_iterations}) f(*one);

@@ -90,6 +90,19 @@ TEST_CASE("the XDMF sidecar names the arrays and rows of every frame") {
   for (std::size_t at = 0; (at = text.find("</Grid>", at)) != std::string::npos; ++at) ++closed;
   REQUIRE(opened == 1 + 3 * 4);
   REQUIRE(opened == closed);
+  CHECK(text.find("<Attribute") == std::string::npos);
+}
+
+TEST_CASE("the XDMF sidecar of a run with contact forces has them as attributes of the cloth") {
+  TrajectoryInfo info = trajectory_info(fake::scene(), "", "conventional", 30);
+  info.contact_forces = true;
+  const std::string text = xdmf_text(info, {0, 0.5}, "run.h5");
+  std::size_t attributes = 0;
+  for (std::size_t at = 0; (at = text.find("<Attribute", at)) != std::string::npos; ++at) ++attributes;
+  CHECK(attributes == 2 * 3);
+  CHECK(text.find("Dimensions=\"2 25 3\">run.h5:/frames/contact_friction<") != std::string::npos);
+  CHECK(text.find("\"3 2\">1 0  1 1  1 25<") != std::string::npos);
+  CHECK(text.find("Dimensions=\"2 25\">run.h5:/frames/contact_pressure<") != std::string::npos);
 }
 
 }  // namespace selvedge::test_export

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
+#include "physics/scene/contact_forces.hpp"
 #include "pipeline/view/view.hpp"
 #include "tests/pipeline/draping_run.hpp"
 #include "tests/pipeline/files.hpp"
@@ -134,6 +135,40 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
   CHECK(early.png.size() > 40'000);
   CHECK(late.png.size() > 40'000);
   CHECK(early.png != late.png);
+}
+
+TEST_CASE("view: the page colours cloth by the pressure of each frame", "[view][browser]") {
+  const std::string chromium = find_chromium();
+  if (chromium.empty()) {
+    WARN("skipped: no chromium on the path");
+    return;
+  }
+  const fake::Folder folder("view_pressure");
+  const std::filesystem::path page = folder.path / "page.html";
+  ViewRun run = fake::draping_run("pressed", 20, 4);
+  run.info.contact_forces = true;
+  run.frame = [frame = run.frame](int index) {
+    Frame f = frame(3);  // the same place in each frame, so that colours alone change
+    ContactForces forces = unknown_contact_forces(f.x.rows());
+    if (index > 0) forces.pressure.setConstant(1000.0 * (index - 1));
+    f.report.contact_forces = std::make_shared<const ContactForces>(forces);
+    return f;
+  };
+  try {
+    write_view_page({run}, page);
+  } catch (const Error& absent) {
+    WARN("skipped: " << absent.what());
+    return;
+  }
+  const Shot plain = open(chromium, page, "theme=light&plots=0&probe=1,2,3"),
+             coloured = open(chromium, page, "theme=light&plots=0&map=0&probe=0,1,2,3");
+  check_quiet(plain);
+  check_quiet(coloured);
+  CHECK(coloured.dom.find("pressure [Pa]") != std::string::npos);
+  const json same = probed(plain), colours = probed(coloured);
+  CHECK(same[0]["hash"] == same[1]["hash"]);  // nothing moves
+  for (std::size_t k = 1; k < colours.size(); ++k) CHECK(colours[k]["hash"] != colours[k - 1]["hash"]);
+  CHECK(colours[1]["mean"].get<double>() < colours[3]["mean"].get<double>());  // more pressure is lighter
 }
 
 TEST_CASE("view: the figure fills a wide window and a narrow one, and stays in it", "[view][browser]") {
