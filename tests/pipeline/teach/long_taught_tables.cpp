@@ -27,7 +27,8 @@ namespace selvedge::long_taught_tables {
 // How far steppers are from the solver after 1, 3 and 10 frames, from states of the solver's own run, and what they
 // cost: a student that the solver has taught beside the carried guess with the same behind it, and the presets. Takes
 // minutes for each outfit and clip. The solver makes its run as it makes the targets of a training (`converged`).
-// SELVEDGE_WEIGHTS: the network; SELVEDGE_FITTED: coefficients by `selvedge teach`; rows without a file are left out.
+// SELVEDGE_WEIGHTS: the network; SELVEDGE_FITTED: coefficients by `selvedge teach`, where OUTFIT in the name stands for
+// the outfit's; rows without a file are left out.
 // SELVEDGE_TAUGHT_OUTFITS, SELVEDGE_TAUGHT_CLIPS: with commas between. SELVEDGE_TAUGHT_FRAMES: of the solver's run.
 // SELVEDGE_TAUGHT_EVERY: every so many of its states, which are 10 frames apart, begins a roll-out.
 
@@ -53,8 +54,10 @@ struct Row {
   std::string fitted = {};             // coefficients of the guess from which one rough solve begins
 };
 
-std::vector<Row> rows() {
-  const std::string weights = given("SELVEDGE_WEIGHTS", ""), fitted = given("SELVEDGE_FITTED", "");
+std::vector<Row> rows(const std::string& outfit) {
+  const std::string weights = given("SELVEDGE_WEIGHTS", "");
+  std::string fitted = given("SELVEDGE_FITTED", "");
+  if (const auto at = fitted.find("OUTFIT"); at != std::string::npos) fitted.replace(at, 6, outfit);
   const auto hybrid = [&](const std::string& mode) {
     return std::vector<std::string>{"run.stepper=hybrid", "run.learned.weights=" + weights, "run.hybrid.mode=" + mode,
                                     "run.hybrid.stop_when_slow=false"};
@@ -158,17 +161,17 @@ Measured measured(const TaughtClip& clip, const Row& row, const Setup& setup, in
 
 void print_title(const std::string& what) {
   fmt::print(
-      "\n| {} | 1 frame, mm | 3 | 10 | proposals taken | pairs, worst frame | passed through | rejected | CPU ms a "
-      "frame "
-      "|\n|---|---|---|---|---|---|---|---|---|\n",
+      "\n| {} | 1 frame, mm | 3 | 10 | 10, geometric | proposals taken | pairs, worst frame | passed through | "
+      "rejected | CPU ms a frame |\n|---|---|---|---|---|---|---|---|---|---|\n",
       what);
 }
 
 void print_row(const Row& row, const Measured& m) {
   const auto distance = [&](std::size_t k) { return 1e3 * std::sqrt(m.squares[k] / std::max(m.rolls, 1)); };
   const std::string taken = row.student ? fmt::format("{:.0f} %", 100.0 * m.proposed / std::max(m.frames, 1)) : "";
-  fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {} | {} | {} | {} | {:.1f} |\n", row.name, distance(0), distance(1),
-             distance(2), taken, m.pairs, m.passed, m.rejected, 1e3 * m.seconds / std::max(m.frames, 1));
+  fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {} | {} | {} | {} | {:.1f} |\n", row.name, distance(0),
+             distance(1), distance(2), 1e3 * std::exp(m.log_distance / std::max(m.rolls, 1)), taken, m.pairs, m.passed,
+             m.rejected, 1e3 * m.seconds / std::max(m.frames, 1));
   std::fflush(stdout);
 }
 
@@ -211,14 +214,14 @@ TEST_CASE("taught network: distance from the solver's roll-outs, beside what lea
       REQUIRE(clip);
       keep_tissue(clip->setup, nullptr);  // so that no row pays for it
       print_title(outfit + ", " + name);
-      for (const Row& row : rows()) {
+      for (const Row& row : rows(outfit)) {
         all[row.name].push_back(measured(*clip, row, setup_of(outfit, name, row.overrides), every));
         REQUIRE(all[row.name].back().rolls > 0);
         print_row(row, all[row.name].back());
       }
     }
   print_title("all");
-  for (const Row& row : rows()) {
+  for (const Row& row : rows("")) {
     Measured sum;
     for (const Measured& one : all[row.name]) add(one, sum);
     print_row(row, sum);
