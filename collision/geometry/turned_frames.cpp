@@ -1,5 +1,10 @@
 #include "collision/geometry/turned_frames.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
 #include "collision/geometry/area_normal.hpp"
 
 namespace selvedge {
@@ -36,6 +41,28 @@ std::vector<Mat3> turned_frames(const Surface& surface, const Points& before, co
       turned[static_cast<std::size_t>(v)] = to * from.transpose();
   }
   return turned;
+}
+
+Mat3 turn_about_vertical(const Points& from, const Points& to) {
+  Vec3 mean_from = Vec3::Zero(), mean_to = Vec3::Zero();
+  int count = 0;
+  const auto counts = [&](Eigen::Index v) { return from.row(v).allFinite() && to.row(v).allFinite(); };
+  for (Eigen::Index v = 0; v < from.rows(); ++v) {
+    if (!counts(v)) continue;
+    mean_from += from.row(v).transpose();
+    mean_to += to.row(v).transpose();
+    ++count;
+  }
+  mean_from /= std::max(count, 1);
+  mean_to /= std::max(count, 1);
+  double along = 0, across = 0;
+  for (Eigen::Index v = 0; v < from.rows(); ++v) {
+    if (!counts(v)) continue;
+    const Vec3 a = from.row(v).transpose() - mean_from, b = to.row(v).transpose() - mean_to;
+    along += a[0] * b[0] + a[2] * b[2];
+    across += a[2] * b[0] - a[0] * b[2];
+  }
+  return Eigen::AngleAxisd(std::atan2(across, along), Vec3::UnitY()).toRotationMatrix();
 }
 
 }  // namespace selvedge

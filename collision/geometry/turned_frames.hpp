@@ -11,4 +11,8 @@ namespace selvedge {
 // identity where a pose is not finite there or has no frame: vertices without area round them.
 std::vector<Mat3> turned_frames(const Surface&, const Points& before, const Points& after);
 
+// The turn about the vertical (y) that brings points nearest to others, both about their means. Rows that are not
+// finite in one of them are left out. The identity where no turn is nearer than another.
+Mat3 turn_about_vertical(const Points& from, const Points& to);
+
 }  // namespace selvedge

@@ -7,8 +7,8 @@ PACKAGE is the folder of the Python package. Each page is run in an empty folder
   the status that the page names (`# ends with status 1`), else with 0. Where the block says `# needs NAME`, and there
   is neither a program nor a Python module of that name, the page ends there.
 * A block `text` has lines that the block before it printed. Only numbers may differ.
-* A picture `![what](NAME.jpg "view.html#frame=3")` is taken of that page of a run and stored where the link leads. A
-  picture that looks as it did before stays as it is.
+* A picture `![what](NAME.jpg "view.html#frame=3")` is taken of that page of a run and stored where the link leads. With
+  `size=1400x600` among the options it has that size. A picture that looks as it did before stays as it is.
 
 The first thing that is not as the page says ends the run with status 1.
 """
@@ -36,7 +36,7 @@ CHROMIUM = (
     "chromium --headless --no-sandbox --use-angle=swiftshader-webgl --disable-background-networking"
     " --disable-component-update --disable-sync --no-first-run --hide-scrollbars"
 ).split()
-WINDOW, SHOWN, MOST_BYTES = (1200, 750), (800, 500), 80_000
+SHOWN, FINER, MOST_BYTES = (800, 500), 1.5, 80_000  # the window is that much larger than the picture
 SAME = 2.0  # mean difference of two pictures that look alike, of 255
 
 
@@ -76,19 +76,34 @@ def compare_printed(text, printed):
             raise ValueError(f"`{line}` was not printed:\n{printed}")
 
 
-def take_picture(view, folder, target):
+def picture_of(view, folder):
+    """The page of a run, as `view` names it below the folder, with its options."""
     file, _, options = view.partition("#")
     if not (folder / file).is_file():
         raise ValueError(f"there is no {file} to take a picture of")
+    size = re.search(r"\bsize=(\d+)x(\d+)", options)
+    shown = (int(size[1]), int(size[2])) if size else SHOWN
     with tempfile.TemporaryDirectory() as profile:
         shot = pathlib.Path(profile) / "shot.png"
-        size = "--window-size={},{}".format(*WINDOW)
+        window = "--window-size={:.0f},{:.0f}".format(*(FINER * pixels for pixels in shown))
         address = f"file://{folder / file}#theme=light&{options}"
-        command = [*CHROMIUM, f"--user-data-dir={profile}", size, f"--screenshot={shot}", address]
+        command = [*CHROMIUM, f"--user-data-dir={profile}", window, f"--screenshot={shot}", address]
         subprocess.run(command, check=True, capture_output=True)
-        picture = Image.open(shot).convert("RGB").resize(SHOWN, Image.Resampling.LANCZOS)
-    if target.is_file() and (before := Image.open(target)).size == picture.size:
-        if max(ImageStat.Stat(ImageChops.difference(before, picture)).mean) < SAME:
+        return Image.open(shot).convert("RGB").resize(shown, Image.Resampling.LANCZOS)
+
+
+def difference(one, other):
+    """The mean difference of two pictures in the colour in which they differ most, of 255; None for other sizes."""
+    if one.size != other.size:
+        return None
+    return max(ImageStat.Stat(ImageChops.difference(one, other)).mean)
+
+
+def take_picture(view, folder, target):
+    picture = picture_of(view, folder)
+    if target.is_file():
+        off = difference(Image.open(target), picture)
+        if off is not None and off < SAME:
             return
     for quality in range(90, 30, -5):
         packed = io.BytesIO()

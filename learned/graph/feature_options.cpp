@@ -69,7 +69,7 @@ FeatureWidths with_time(const FeatureOptions& options, int normalised, int behin
 
 int objective_columns(const FeatureOptions& options) {
   return (options.body_inputs ? 14 : 0) + (options.force_inputs ? 3 : 0) + (options.pass_inputs ? 3 : 0) +
-         (options.guess_inputs ? 9 : 0) + (options.acceleration_inputs ? 3 : 0);
+         (options.guess_inputs ? 15 : 0) + (options.acceleration_inputs ? 3 : 0);
 }
 
 bool sees_accelerations(const FeatureOptions& options) { return options.acceleration_inputs || options.guess_inputs; }

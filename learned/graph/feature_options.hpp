@@ -65,7 +65,7 @@ struct FeatureOptions {
   OutputBase base = OutputBase::motion;
 
   // More columns of cloth nodes, for our own networks (docs/training.md). Normalised ones: body 14, force 3, move 3,
-  // guess 9. After the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
+  // guess 15. After the materials: flags, in the order pinned, near the body, pass. Obstacle vertices have zeros there.
   bool pinned_flag = false;
   bool body_inputs = false;          // relation to the nearest face of the body within body_radius: node_features.hpp
   bool force_inputs = false;         // GraphState::force, its length l compressed to log(1 + l / 1 mm)

@@ -42,8 +42,10 @@ struct GraphState {
 
   Points elastic;  // the motion by elastic forces alone, from the guess (elastic_motion); empty: zero
 
-  // Turns the output of each vertex into space (OutputBase::carried); empty: not at all.
-  std::vector<Mat3> frames;
+  // For networks beside the carried guess (OutputBase::carried).
+  Mat3 heading = Mat3::Identity();  // turns what they see, as if worn cloth faced as its rest shape does, into space
+  std::vector<Mat3> frames;         // turns the output of each vertex into space; empty: not at all
+  Points worn_motion, worn_offset;  // of the skinned target in the frame; from it to the cloth [m]; empty: zero
 };
 
 }  // namespace selvedge

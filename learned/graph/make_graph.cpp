@@ -21,6 +21,8 @@ void check_sizes(const GraphScene& scene, const RestGraph& rest, const GraphStat
       (state.force.rows() > 0 && state.force.rows() != cloth) ||
       (state.acceleration.rows() > 0 && state.acceleration.rows() != cloth) ||
       (state.elastic.rows() > 0 && state.elastic.rows() != cloth) ||
+      (state.worn_motion.rows() > 0 && state.worn_motion.rows() != cloth) ||
+      (state.worn_offset.rows() > 0 && state.worn_offset.rows() != cloth) ||
       wrong({state.body.rows(), state.body_previous.rows(), state.body_target.rows()}, body))
     throw Error("a state has another number of vertices than its scene", "graph of a learned stepper", "");
 }
@@ -35,6 +37,8 @@ std::string complaint(const GraphState& state) {
     return "a position or velocity of the cloth is not finite or far too large";
   if (!is_usable(state.guess) || !is_usable(state.force) || !is_usable(state.elastic))
     return "a guess or a force on the cloth is not finite or far too large";
+  if (!is_usable(state.worn_motion) || !is_usable(state.worn_offset))
+    return "a skinned target is not finite or far too large";
   if (!is_usable(state.acceleration)) return "an acceleration of the cloth is not finite or far too large";
   if (!is_usable(state.body) || !is_usable(state.body_previous) || !is_usable(state.body_target))
     return "a position of the body is not finite or far too large";
@@ -116,18 +120,29 @@ void fill_space_edges(const std::vector<SpacePair>& pairs, const GraphScene& sce
   fill_mesh_edges(edges, state, seen, guess, options, set);
 }
 
+// The state as it is seen from its heading.
+GraphState turned_back(GraphState state) {
+  for (Points* rows : {&state.x, &state.previous, &state.target, &state.velocity, &state.body, &state.body_previous,
+                       &state.body_target, &state.acceleration, &state.guess, &state.force, &state.elastic,
+                       &state.worn_motion, &state.worn_offset})
+    *rows *= state.heading;  // each row times the inverse turn
+  return state;
+}
+
 }  // namespace
 
-void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& state,
+void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphState& in_space,
                     const FeatureOptions& options, const FeatureTables& tables, GraphSearch& search, Graph& graph,
                     GraphReport& report) {
-  check_sizes(scene, rest, state);
+  check_sizes(scene, rest, in_space);
   report = {};
-  report.refused = complaint(state);
+  report.refused = complaint(in_space);
   if (!report.refused.empty()) {
     graph = {};
     return;
   }
+  const GraphState turned = options.base == OutputBase::carried ? turned_back(in_space) : GraphState();
+  const GraphState& state = options.base == OutputBase::carried ? turned : in_space;
   const SeenPositions seen = seen_positions(rest, state, options);
   const bool with_body = !options.body_key.empty();
   if (with_body || options.body_inputs)

@@ -45,7 +45,8 @@ Eigen::RowVector3f compressed(const Vec3& force) {
       .cast<float>();
 }
 
-// guess - x, then the elastic and the inertial forces over the mass, times dt^2 [m].
+// guess - x, then the elastic and the inertial forces over the mass, times dt^2, then the motion of the skinned target
+// and the offset from it [m].
 void fill_guess_columns(const GraphScene& scene, const GraphState& state, const SeenPositions& seen,
                         const Points& guess, const Points& inertial, int first, FeatureRows& nodes) {
   const double dt2 = state.timestep * state.timestep;
@@ -53,6 +54,8 @@ void fill_guess_columns(const GraphScene& scene, const GraphState& state, const 
   for (int v = 0; v < scene.cloth.vertex_count; ++v) {
     auto features = nodes.row(v);
     features.segment<3>(first) = (guess.row(v) - seen.x.row(v)).cast<float>();
+    if (state.worn_motion.rows() > 0) features.segment<3>(first + 9) = state.worn_motion.row(v).cast<float>();
+    if (state.worn_offset.rows() > 0) features.segment<3>(first + 12) = state.worn_offset.row(v).cast<float>();
     if (scene.types[static_cast<std::size_t>(v)] == pinned_vertex) continue;
     if (state.elastic.rows() > 0) features.segment<3>(first + 3) = compressed(row(state.elastic, v));
     Vec3 left = row(inertial, v) - row(guess, v);

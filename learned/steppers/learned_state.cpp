@@ -61,10 +61,22 @@ GraphState graph_state(const Scene& scene, const State& from, const Drive& drive
 
 void set_carried_base(const Scene& scene, const State& from, const Drive& drive, double dt, GraphState& state) {
   state.guess = carried_guess(scene, from, drive, dt);
+  state.heading.setIdentity();
   state.frames.clear();
+  state.worn_motion.resize(0, 3);
+  state.worn_offset.resize(0, 3);
   const MemoryRows* before = carried_targets(from);
-  if (before && drive.skinned_targets.rows() > 0)
-    state.frames = turned_frames(scene.surface, *before, drive.skinned_targets);
+  if (!before || drive.skinned_targets.rows() == 0) return;
+  state.heading = turn_about_vertical(scene.rest, drive.skinned_targets);
+  state.frames = turned_frames(scene.surface, *before, drive.skinned_targets);
+  for (Mat3& frame : state.frames) frame *= state.heading;
+  state.worn_motion = drive.skinned_targets - *before;
+  state.worn_offset = from.x - *before;
+  for (Eigen::Index v = 0; v < from.x.rows(); ++v)
+    if (!drive.skinned_targets.row(v).allFinite()) {
+      state.worn_motion.row(v).setZero();
+      state.worn_offset.row(v).setZero();
+    }
 }
 
 void carry_frame(const FeatureOptions& features, const State& from, const Drive& drive, State& to) {

@@ -34,8 +34,10 @@ GraphState graph_state(const Scene&, const State& from, const Drive&);
 StepEnd learned_end(const Scene&, const FeatureOptions&, const State& from, const Drive&, const GraphState&,
                     const Points& seen, const NextCloth&);
 
-// For a network whose output is added to the carried guess (OutputBase::carried): sets the state's guess to that, and
-// its frames to how the skinned targets turned since the last frame. Reads what carried_memory left in `from`.
+// For a network whose output is added to the carried guess (OutputBase::carried): sets the state's guess to that, its
+// heading to the turn about the vertical that brings the rest shape nearest to the skinned targets, its frames to how
+// these turned since the last frame, from that heading, and what is seen of the targets. Reads what carried_memory left
+// in `from`. Cloth that nothing wears, and a state without that memory, have neither heading, frames nor targets.
 void set_carried_base(const Scene&, const State& from, const Drive&, double dt, GraphState&);
 
 // For a step that another stepper made: writes into `to` the memory that a network's step would have left, so that no

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Selvedge as an external cloth solver in Blender (docs/blender.md)."""
 
-from . import operators, panel, settings
+from . import operators, panel, settings, timeline
 
 # For Blender before 4.2; later ones read blender_manifest.toml.
 bl_info = {
@@ -13,7 +13,7 @@ bl_info = {
     "description": "Bakes cloth by the program selvedge, which checks every frame for intersections",
     "category": "Physics",
 }
-PARTS = (settings, operators, panel)
+PARTS = (settings, operators, panel, timeline)
 
 
 def register():

@@ -43,3 +43,18 @@ def ranges(frames, step):
         else:
             found.append((frame, frame, frames[frame]))
     return found
+
+
+def strip(rows, place, width, height):
+    """Rectangles at the bottom of a timeline: corners and triangles. rows: first and last frames; place: where a frame
+    is, in pixels from the left; width: that of the timeline, beyond which nothing is drawn."""
+    corners, triangles = [], []
+    for first, last in rows:
+        left, right = max(0, place(first - 0.5)), min(width, place(last + 0.5))
+        if left >= right:
+            continue
+        right = max(right, left + 2)  # still seen where a frame is narrower than that
+        k = len(corners)
+        corners += [(left, 0), (right, 0), (right, height), (left, height)]
+        triangles += [(k, k + 1, k + 2), (k, k + 2, k + 3)]
+    return corners, triangles

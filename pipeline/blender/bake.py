@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A bake: the scene is written, the program runs, its result comes back onto the garment.
+"""A bake: the scene is written, the program runs, its result comes back onto the garments.
 
 `bake(garment)` does all of it, with a window or without. The operators take the same steps a few at a time.
 """
@@ -30,14 +30,18 @@ class Job:
 
     @property
     def garment(self):
-        found = bpy.data.objects.get(self.garment_name)
-        if not found:
-            raise Failure(f"`{self.garment_name}` is gone", "bake anew")
-        return found
+        return found_object(self.garment_name)
 
     @property
     def scene(self):
         return bpy.data.scenes[self.scene_name]
+
+
+def found_object(name):
+    found = bpy.data.objects.get(name)
+    if not found:
+        raise Failure(f"`{name}` is gone", "bake anew")
+    return found
 
 
 def new_job(context, garment, resume=False):
@@ -152,17 +156,26 @@ def asked(job, arguments, doing, stoppable=False):
 
 
 def brought(job, run, summary, span, written):
-    """The result comes onto the garment, and frames with pairs are shown."""
+    """The result comes onto the garments, and frames with pairs are shown."""
     first, step, _ = span
-    bad, export = {}, run.parent / "export"
-    yield from asked(job, ["export", run, "--format", "pc2", "--out", export], "reads the result")
+    bad, folder = {}, run.parent
+    export = folder / "export"
+    made = yield from asked(job, ["export", run, "--format", "pc2", "--out", export], "reads the result")
     if audit.has_pairs(summary):
         report = yield from asked(job, ["check", run], "looks for pairs")
         bad = audit.bad_frames(report, first, step)
-    cache = run.parent / "garment.pc2"
-    reading_back.write_cache(export / "cloth.pc2", written, cache)
+    exported = [file for file in made["files"] if file.endswith(".pc2")]  # in the order of the cloths
+    targets = [folder / f"{mesh}.pc2" for mesh in written.meshes]
+    for file, matrices, target in zip(exported, written.matrices.values(), targets):
+        reading_back.write_cache(file, matrices, written.unit_scale, target)
     shutil.rmtree(export)
-    garment = job.garment
-    reading_back.put_cache(garment, cache, first, step)
-    reading_back.show_audit(garment, job.scene, bad, step)
-    garment.selvedge.message, garment.selvedge.clean = audit.verdict(summary), summary["clean"]
+    garments = [found_object(name) for name in written.matrices]
+    for left in reading_back.baked_together(job.garment):
+        if left not in garments:
+            reading_back.release(left, job.scene)
+    reading_back.show_audit(garments, job.scene, bad, step)
+    for garment, target in zip(garments, targets):
+        reading_back.put_cache(garment, target, first, step)
+        settings = garment.selvedge
+        settings.baked_with = job.garment if garment != job.garment else None
+        settings.message, settings.clean, settings.error = audit.verdict(summary), summary["clean"], ""

@@ -41,6 +41,7 @@ def draw_choices(layout, garment, scene):
     column.use_property_split, column.use_property_decorate = True, False
     column.prop(settings, "body")
     column.prop(settings, "obstacles")
+    column.prop(settings, "together")
     column.prop(settings, "material")
     column.prop_search(settings, "pins", garment, "vertex_groups")
     column.prop(settings, "thickness")
@@ -75,6 +76,8 @@ def draw_buttons(layout, garment, job):
 
 
 def draw_result(layout, settings, wide):
+    if settings.baked_with:
+        layout.label(text=f"Baked together with {settings.baked_with.name}", icon="LINKED")
     if settings.error:
         draw_text(layout.box(), settings.error, wide, "ERROR", alert=True)
     if settings.message:
@@ -88,7 +91,7 @@ def draw_result(layout, settings, wide):
             line.alert = True  # red
             line.operator("selvedge.go_to_frame", text=f"{frames}: {row.pairs} pairs").frame = row.first
         if len(settings.bad) > MOST_ROWS:
-            box.label(text=f"and {len(settings.bad) - MOST_ROWS} more, as markers on the timeline")
+            box.label(text=f"and {len(settings.bad) - MOST_ROWS} more, in red on the timeline")
     if settings.warnings:
         box = layout.box()
         for warning in settings.warnings[:MOST_WARNINGS]:

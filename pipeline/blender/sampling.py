@@ -31,8 +31,16 @@ def cache_place(garment):
 
 
 @contextlib.contextmanager
+def before_the_caches(names):
+    """The garments of these names without their caches and without what stands behind those."""
+    with contextlib.ExitStack() as all_of_them:
+        for name in names:
+            all_of_them.enter_context(before_the_cache(name))
+        yield
+
+
+@contextlib.contextmanager
 def before_the_cache(name):
-    """The garment of a name without its cache and without what stands behind that."""
     garment = bpy.data.objects[name]
     cache, place = cache_of(garment), cache_place(garment)
     others = [one for one in garment.modifiers if one != cache]
@@ -52,28 +60,40 @@ def show_modifiers(name, modifiers, shown):
             garment.modifiers[modifier].show_viewport = shown
 
 
-def obstacles_of(garment):
-    """The body and the meshes of the collection, each once, without the garment."""
+def meshes_of(collection):
+    return [thing for thing in collection.all_objects if thing.type == "MESH"] if collection else []
+
+
+def garments_of(garment):
+    """The garment and those that are baked together with it, each once."""
     settings = garment.selvedge
+    further = [thing for thing in meshes_of(settings.together) if thing != settings.body]
+    return list(dict.fromkeys([garment, *further]))
+
+
+def obstacles_of(garment):
+    """The body and the meshes of the collection, each once, without the garments of the bake."""
+    settings, garments = garment.selvedge, garments_of(garment)
     found = [settings.body] if settings.body else []
-    found += [thing for thing in (settings.obstacles.all_objects if settings.obstacles else []) if thing.type == "MESH"]
-    return list(dict.fromkeys(thing for thing in found if thing != garment))
+    return list(dict.fromkeys(thing for thing in found + meshes_of(settings.obstacles) if thing not in garments))
 
 
 def check_usable(garment, scene, view_layer):
-    """Raises Failure where the garment or an obstacle cannot be read."""
+    """Raises Failure where a garment or an obstacle cannot be read."""
     view_layer.update()  # objects that a script has just made
-    for thing in [garment, *obstacles_of(garment)]:
+    garments = garments_of(garment)
+    for thing in [*garments, *obstacles_of(garment)]:
         if thing.name not in view_layer.objects or not thing.visible_get(view_layer=view_layer):
             raise Failure(f"`{thing.name}` is hidden, or is not in this view layer", "show it while you bake")
         if thing.mode == "EDIT":
             raise Failure(f"`{thing.name}` is in Edit Mode", "leave Edit Mode")
-    if not garment.data.polygons:
-        raise Failure(f"`{garment.name}` has no faces", "select the mesh of a garment")
-    for one in garment.modifiers:
-        if one.type in SIMULATING and one.show_viewport:
-            kind = SIMULATING[one.type]
-            raise Failure(f"`{garment.name}` is simulated by Blender's modifier {kind}, too", f"turn {kind} off")
+    for thing in garments:
+        if not thing.data.polygons:
+            raise Failure(f"`{thing.name}` has no faces", "select the mesh of a garment")
+        for one in thing.modifiers:
+            if one.type in SIMULATING and one.show_viewport:
+                kind = SIMULATING[one.type]
+                raise Failure(f"`{thing.name}` is simulated by Blender's modifier {kind}, too", f"turn {kind} off")
 
 
 def shown_mesh(thing, depsgraph):

@@ -46,16 +46,21 @@ class Pins:
 
 
 @dataclasses.dataclass
-class Scene:
-    """A cloth among obstacles. SI units, y up."""
-
-    cloth: str
+class Cloth:
+    name: str
     mesh: str
-    frames: int
-    fps: float  # of the run
     rest: str = ""  # mesh file with the rest shape; empty: that of `mesh`
     material: str = "cotton"
     pins: Pins = dataclasses.field(default_factory=Pins)
+
+
+@dataclasses.dataclass
+class Scene:
+    """Cloths among obstacles. SI units, y up."""
+
+    cloths: list[Cloth]
+    frames: int
+    fps: float  # of the run
     obstacles: list[Obstacle] = dataclasses.field(default_factory=list)
     sample_fps: float = 30.0  # of the obstacles' caches and of the pins' displacements
     gravity: tuple[float, float, float] = (0.0, -9.81, 0.0)
@@ -67,11 +72,13 @@ class Scene:
 def scene_text(scene):
     """The scene file."""
     quoted = lambda text: json.dumps(text, ensure_ascii=False)
-    lines = ["cloths:", f"  - name: {quoted(scene.cloth)}", f"    mesh: {quoted(scene.mesh)}"]
-    if scene.rest:
-        lines.append(f"    rest: {{from: mesh, file: {quoted(scene.rest)}}}")
-    lines.append(f"    material: {quoted(scene.material)}")
-    lines += pin_lines(scene.pins, scene.sample_fps)
+    lines = ["cloths:"]
+    for cloth in scene.cloths:
+        lines += [f"  - name: {quoted(cloth.name)}", f"    mesh: {quoted(cloth.mesh)}"]
+        if cloth.rest:
+            lines.append(f"    rest: {{from: mesh, file: {quoted(cloth.rest)}}}")
+        lines.append(f"    material: {quoted(cloth.material)}")
+        lines += pin_lines(cloth.pins, scene.sample_fps)
     if scene.obstacles:
         lines.append("obstacles:")
     for one in scene.obstacles:

@@ -72,6 +72,12 @@ class SelvedgeSettings(bpy.types.PropertyGroup):
     obstacles: PointerProperty(
         name="Others", description="Further meshes that the cloth must not go through", type=bpy.types.Collection
     )
+    together: PointerProperty(
+        name="Together with",
+        description="Further garments that are baked at once with this one, each of its own material, pins and rest "
+        "shape. All else is chosen here",
+        type=bpy.types.Collection,
+    )
     material: StringProperty(
         name="Material",
         description="A material of the program",
@@ -109,6 +115,7 @@ class SelvedgeSettings(bpy.types.PropertyGroup):
         default="//selvedge",
         subtype="DIR_PATH",
     )
+    baked_with: PointerProperty(type=bpy.types.Object)  # whose bake this one was part of; none: its own
     message: StringProperty()  # what became of the last bake
     error: StringProperty()  # what was wrong, and in a second line the cure
     clean: BoolProperty()

@@ -15,8 +15,45 @@ from .program import Failure
 class Written:
     """What reading back needs of the scene that was written."""
 
-    matrices: list  # of the garment, in each frame of the run
+    matrices: dict  # of each garment by its name, in the order of the cloths: of each frame of the run
+    meshes: list  # names of their files, without the suffix
     unit_scale: float  # metres in a unit of Blender
+
+
+class Garment:
+    """A garment and what is seen of it while Blender goes through the frames."""
+
+    def __init__(self, thing, number, folder):
+        self.name, self.folder, self.pinned = thing.name, folder, sampling.pinned_vertices(thing)
+        self.number = f"_{number}" if number else ""
+        self.mesh = f"garment{self.number}"
+        self.start, self.paths, self.matrices = None, [], []
+
+    def add(self, thing, depsgraph, unit, in_run):
+        """A frame; `in_run`: whether the run has it, too."""
+        if self.start is None or self.pinned:
+            x, counts, corners = sampling.shown_mesh(thing, depsgraph)
+            self.start = self.start or (scene_file.to_file_axes(x, unit), counts, corners)
+            self.paths.append(scene_file.to_file_axes(x[self.pinned], unit))
+        if in_run:
+            self.matrices.append(sampling.world_matrix(thing.evaluated_get(depsgraph)))
+
+    def end(self, thing, unit):
+        """The cloth as the scene file has it; writes its meshes."""
+        settings, (x, counts, corners) = thing.selvedge, self.start
+        if len(x) != len(thing.data.vertices):
+            raise Failure(f"`{self.name}` has other vertices behind its modifiers", "move its deforming modifiers up")
+        mesh, rest = f"{self.mesh}.obj", ""
+        (self.folder / mesh).write_text(scene_file.obj_text(x, counts, corners))
+        if settings.rest == "MODELLED":
+            placed = sampling.placed(sampling.modelled_mesh(thing), self.matrices[0])
+            modelled = scene_file.to_file_axes(placed, unit)
+            if not np.array_equal(modelled, x):
+                rest = f"rest{self.number}.obj"
+                (self.folder / rest).write_text(scene_file.obj_text(modelled, counts, corners))
+        displacements = np.array(self.paths) - self.paths[0] if self.pinned else None
+        pins = scene_file.Pins(self.pinned, displacements)
+        return scene_file.Cloth(self.name, mesh, rest, settings.material, pins)
 
 
 class Track:
@@ -62,62 +99,41 @@ def unit_scale_of(scene):
 def write_scene(garment, scene, view_layer, span):
     """A generator of the frames that were read. Returns Written. `span`: first frame, step and number of steps."""
     first, step, count = span
-    folder = bake_folder(garment)
-    unit = unit_scale_of(scene)
+    folder, unit = bake_folder(garment), unit_scale_of(scene)
     tracks = [Track(thing, k, folder) for k, thing in enumerate(sampling.obstacles_of(garment))]
-    names, pinned = [track.name for track in tracks], sampling.pinned_vertices(garment)
-    own_name, matrices, paths, start = garment.name, [], [], None
+    garments = [Garment(thing, k, folder) for k, thing in enumerate(sampling.garments_of(garment))]
+    track_names = [track.name for track in tracks]
     shown = scene.frame_current, scene.frame_subframe
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        with sampling.before_the_cache(garment.name):
+        with sampling.before_the_caches([one.name for one in garments]):
             for frame in range(first, first + step * count + 1):
                 scene.frame_set(frame)
                 depsgraph, things = view_layer.depsgraph, scene.objects
-                for name, track in zip(names, tracks):
+                for name, track in zip(track_names, tracks):
                     x, counts, corners = sampling.shown_mesh(things[name], depsgraph)
                     track.add(scene_file.to_file_axes(x, unit), counts, corners, frame)
-                garment = things[own_name]
-                if start is None or pinned:
-                    x, counts, corners = sampling.shown_mesh(garment, depsgraph)
-                    start = start or (scene_file.to_file_axes(x, unit), counts, corners)
-                    paths.append(scene_file.to_file_axes(x[pinned], unit))
-                if (frame - first) % step == 0:
-                    matrices.append(sampling.world_matrix(garment.evaluated_get(depsgraph)))
+                for one in garments:
+                    one.add(things[one.name], depsgraph, unit, (frame - first) % step == 0)
                 yield frame
-        text = scene_file.scene_text(described(garment, scene, span, start, (pinned, paths), tracks, matrices[0]))
-        (folder / "scene.yaml").write_text(text)
-        return Written(matrices, unit)
+        cloths = [one.end(scene.objects[one.name], unit) for one in garments]
+        settings = scene.objects[garments[0].name].selvedge
+        (folder / "scene.yaml").write_text(scene_file.scene_text(described(settings, scene, span, cloths, tracks)))
+        return Written({one.name: one.matrices for one in garments}, [one.mesh for one in garments], unit)
     finally:
         for track in tracks:
             track.drop()
         scene.frame_set(shown[0], subframe=shown[1])
 
 
-def described(garment, scene, span, start, pins, tracks, matrix):
-    """The scene file's content; writes the garment's meshes beside it."""
-    settings, (x, counts, corners), (pinned, paths) = garment.selvedge, start, pins
-    folder, unit = bake_folder(garment), unit_scale_of(scene)
-    if len(x) != len(garment.data.vertices):
-        raise Failure(f"`{garment.name}` has other vertices behind its modifiers", "move its deforming modifiers up")
-    (folder / "garment.obj").write_text(scene_file.obj_text(x, counts, corners))
-    rest = ""
-    if settings.rest == "MODELLED":
-        modelled = scene_file.to_file_axes(sampling.placed(sampling.modelled_mesh(garment), matrix), unit)
-        if not np.array_equal(modelled, x):
-            rest = "rest.obj"
-            (folder / rest).write_text(scene_file.obj_text(modelled, counts, corners))
+def described(settings, scene, span, cloths, tracks):
+    """The scene file's content."""
     fps = scene.render.fps / scene.render.fps_base
     gravity = scene_file.to_file_axes(scene.gravity if scene.use_gravity else (0, 0, 0), 1)
-    displacements = np.array(paths) - paths[0] if pinned else None
     return scene_file.Scene(
-        cloth=garment.name,
-        mesh="garment.obj",
-        rest=rest,
+        cloths=cloths,
         frames=span[2],
         fps=fps / span[1],
-        material=settings.material,
-        pins=scene_file.Pins(pinned, displacements),
         obstacles=[track.end() for track in tracks],
         sample_fps=fps,
         gravity=tuple(gravity),
@@ -133,7 +149,8 @@ def rounded(value):
 
 
 def bake_folder(garment):
-    """The folder of a garment's bake. Raises Failure where it is to be beside a file that has no place yet."""
+    """The folder of a bake, whose first garment this is. Raises Failure where it is to be beside a file that has no
+    place yet."""
     name = garment.selvedge.folder
     if name.startswith("//") and not bpy.data.filepath:
         raise Failure("the folder of the bake is beside the .blend file, and that is not saved yet", "save it first")

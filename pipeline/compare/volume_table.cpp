@@ -17,29 +17,6 @@ double per_frame(const VolumeSequence& s, double sum) {
   return sum / std::max<double>(1, static_cast<double>(s.found.loss_by_frame.size()));
 }
 
-MeanInterval mean_interval(const std::vector<double>& values, int resamples, std::uint64_t seed) {
-  MeanInterval result;
-  const std::size_t count = values.size();
-  if (count == 0) return result;
-  result.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(count);
-  result.low = result.high = result.mean;
-  if (count < 2) return result;
-  std::mt19937_64 random(seed);
-  std::vector<double> means;
-  for (int r = 0; r < resamples; ++r) {
-    double sum = 0;
-    for (std::size_t k = 0; k < count; ++k) sum += values[random() % count];
-    means.push_back(sum / static_cast<double>(count));
-  }
-  std::ranges::sort(means);
-  const auto at = [&](double part) {
-    return means[static_cast<std::size_t>(std::lround(part * static_cast<double>(means.size() - 1)))];
-  };
-  result.low = at(0.025);
-  result.high = at(0.975);
-  return result;
-}
-
 // The logarithm of how a sequence's loss stands to the baseline's; a thousandth of a joule is what both can have alike.
 constexpr double least_loss = 1e-3;
 std::vector<double> log_ratios(const std::vector<const VolumeSequence*>& rows, const std::vector<VolumeSequence>& all,
@@ -70,6 +47,29 @@ double middle_of(std::vector<double> values) {
 }
 
 }  // namespace
+
+MeanInterval mean_interval(const std::vector<double>& values, int resamples, std::uint64_t seed) {
+  MeanInterval result;
+  const std::size_t count = values.size();
+  if (count == 0) return result;
+  result.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(count);
+  result.low = result.high = result.mean;
+  if (count < 2) return result;
+  std::mt19937_64 random(seed);
+  std::vector<double> means;
+  for (int r = 0; r < resamples; ++r) {
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) sum += values[random() % count];
+    means.push_back(sum / static_cast<double>(count));
+  }
+  std::ranges::sort(means);
+  const auto at = [&](double part) {
+    return means[static_cast<std::size_t>(std::lround(part * static_cast<double>(means.size() - 1)))];
+  };
+  result.low = at(0.025);
+  result.high = at(0.975);
+  return result;
+}
 
 std::vector<VolumeSummary> volume_summaries(const std::vector<VolumeSequence>& all, const std::string& baseline,
                                             int resamples, std::uint64_t seed) {

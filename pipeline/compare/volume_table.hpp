@@ -21,6 +21,7 @@ struct VolumeSequence {
 struct MeanInterval {
   double mean = 0, low = 0, high = 0;
 };
+MeanInterval mean_interval(const std::vector<double>& values, int resamples, std::uint64_t seed);
 
 // The means of a row in a group. All frames of a sequence count alike, and so do all sequences.
 struct VolumeSummary {

@@ -64,6 +64,31 @@ def pinned(bake, garment, x):
     garment.selvedge.pins = ""
 
 
+def together(bake, garment, folder, x):
+    """A second sheet above the first one is baked with it, and then no more."""
+    upper = sheet(name="upper", height=0.43)
+    upper.selvedge.material = "silk"
+    garments = bpy.data.collections.new("garments")
+    for one in (garment, upper):
+        garments.objects.link(one)
+    garment.selvedge.together = garments
+    clean = bake.bake(garment)
+    report = {"clean": clean, "lower": said(garment), "upper": said(upper), "with": upper.selvedge.baked_with.name}
+    frames = range(FIRST, bpy.context.scene.frame_end + 1)
+    report["frames"] = len(frames)
+    x["together sheet"], x["together upper"] = shown(garment, frames), shown(upper, frames)
+    own = folder / "selvedge" / "sheet"
+    (own / "run").rename(folder / "together_run")
+    (folder / "together.yaml").write_text((own / "scene.yaml").read_text())
+    garments.objects.unlink(upper)
+    bake.bake(garment)
+    report["upper alone"] = said(upper)
+    report["with after"] = upper.selvedge.baked_with.name if upper.selvedge.baked_with else ""
+    garment.selvedge.together = None
+    bpy.data.objects.remove(upper)
+    return report
+
+
 def tangled(bake, garment):
     """A start that goes through the body."""
     garment.animation_data_clear()
@@ -133,6 +158,7 @@ def main():
     scene.frame_step = 1
     scene.frame_end = FIRST + 5
     pinned(bake, garment, x)
+    report["together"] = together(bake, garment, folder, x)
     report["faults"] = faults(bake, garment, body)
     report["tangled"] = tangled(bake, garment)
 

@@ -62,15 +62,15 @@ def boxes():
     return body
 
 
-def sheet(side=17):
+def sheet(side=17, name="sheet", height=0.42):
     """Quads of a square, placed, turned and scaled by the object; it moves aside, which the cloth must not feel."""
     ticks = np.linspace(-1, 1, side)
     x = [(a, b, 0) for a in ticks for b in ticks]
     faces = [(i, i + side, i + side + 1, i + 1) for i in range(side * (side - 1)) if i % side < side - 1]
-    thing = added("sheet", x, faces)
+    thing = added(name, x, faces)
     thing.rotation_euler, thing.scale = (0, 0, 0.5), (0.25, 0.2, 3)
     for frame, place in ((FIRST, 0), (LAST, 0.3)):
-        thing.location = (place, 0, 0.42)
+        thing.location = (place, 0, height)
         thing.keyframe_insert("location", frame=frame)
     return thing
 

@@ -9,6 +9,7 @@ import pathlib
 import sys
 
 import bpy
+import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from blender_boxes import FIRST, boxes, install, said, sheet  # noqa: E402
@@ -33,6 +34,37 @@ def simulating():
     return bpy.context.window_manager.selvedge.text.startswith("frame ")
 
 
+def red_columns():
+    """How many columns of the window's pixels have a red one, as the strip has."""
+    file = folder / "window.png"
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.screen.screenshot(filepath=str(file))
+    image = bpy.data.images.load(str(file))
+    width, height = image.size
+    pixels = np.empty(4 * width * height, np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    red, green, blue, _ = pixels.reshape(height, width, 4).transpose(2, 0, 1)
+    return int(((red > 0.7) & (green < 0.25) & (blue < 0.25)).any(axis=0).sum())
+
+
+def timeline(garment):
+    """The strip of frames with pairs, in a timeline as large as the 3D viewport."""
+    area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
+    area.ui_type = "TIMELINE"
+    for found in ("before", "strip"):
+        if found == "strip":
+            row = garment.selvedge.bad.add()
+            row.first, row.last, row.pairs = FIRST + 20, FIRST + 40, 3
+        for _ in range(20):
+            area.tag_redraw()
+            yield
+        seen[found] = red_columns()
+    garment.selvedge.bad.clear()
+    area.ui_type = "VIEW_3D"
+    yield
+
+
 def story(garment, body):
     seen["pressed"] = sorted(press())
     seen["body"] = garment.selvedge.body == body  # the other selected mesh
@@ -50,6 +82,7 @@ def story(garment, body):
         seen["frames"].append(bpy.context.window_manager.selvedge.text)
         yield
     seen["resumed"] = said(garment)
+    yield from timeline(garment)
     garment.selvedge.material = "cottn"
     press()
     while at_work():
@@ -82,6 +115,7 @@ def begin():
     bpy.app.timers.register(turn)
 
 
+bpy.context.preferences.view.show_splash = False  # it would cover what is looked at
 for thing in list(bpy.data.objects):
     bpy.data.objects.remove(thing)
 bpy.app.timers.register(begin, first_interval=0.5)

@@ -111,6 +111,21 @@ def test_pins_go_with_the_object(baked):
     assert np.abs(shown["pins"][:6] - wanted).max() < 1e-6
 
 
+def test_garments_baked_together(baked):
+    """Each plays its own cloth of one run."""
+    shown, said, folder = baked
+    count = said["together"]["frames"]
+    for name in ("sheet", "upper"):
+        off = np.abs(shown[f"together {name}"] - trajectory(folder, "together_run", name, count)).max()
+        assert off < 1e-5
+    scene = (folder / "together.yaml").read_text()
+    assert scene.count("  - name:") == 3 and 'material: "silk"' in scene and 'material: "cotton"' in scene
+    together = said["together"]
+    assert together["lower"]["clean"] and together["upper"]["message"] == together["lower"]["message"]
+    assert together["upper"]["modifiers"] == [["selvedge", "MESH_CACHE"]] and together["with"] == "sheet"
+    assert together["upper alone"]["modifiers"] == [] and together["with after"] == ""
+
+
 def test_a_tangled_start_is_red(baked):
     _, said, _ = baked
     for found in (said["tangled"], said["operator"]):

@@ -37,13 +37,16 @@ def test_a_mesh_keeps_its_order_and_its_floats():
 
 
 def test_a_scene_file():
-    scene = scene_file.Scene("a: \"b\"", "garment.obj", 30, 12.5, rest="rest.obj", sample_fps=25.0)
+    scene = scene_file.Scene([], 30, 12.5, sample_fps=25.0)
+    scene.cloths = [scene_file.Cloth("a: \"b\"", "garment.obj", "rest.obj"), scene_file.Cloth("c", "garment_1.obj")]
     obstacle = scene_file.Obstacle
     scene.obstacles = [obstacle("still", "body_0.obj"), obstacle("é", "body_1.obj", "body_1.pc2")]
-    scene.pins = scene_file.Pins([4, 7])
+    scene.cloths[0].pins = scene_file.Pins([4, 7])
+    scene.cloths[1].material = "silk"
     assert scene_file.scene_text(scene) == (
         'cloths:\n  - name: "a: \\"b\\""\n    mesh: "garment.obj"\n    rest: {from: mesh, file: "rest.obj"}\n'
         '    material: "cotton"\n    pins:\n      - vertices: [4, 7]\n'
+        '  - name: "c"\n    mesh: "garment_1.obj"\n    material: "silk"\n'
         'obstacles:\n  - name: "still"\n    mesh: "body_0.obj"\n  - name: "é"\n'
         '    sequence: {cache: "body_1.pc2", mesh: "body_1.obj", fps: 25.0, start: 0 s}\n'
         "gravity: [0.0, -9.81, 0.0]\ncontact: {thickness: 0.002, friction: 0.3}\n"
@@ -71,8 +74,8 @@ def test_the_program_reads_it(tmp_path):
     (tmp_path / "garment.obj").write_text(scene_file.obj_text(SIX, np.array([4, 4]), QUADS))
     (tmp_path / "body_0.obj").write_text(scene_file.obj_text(frames[0], np.array([3] * 4), tetrahedron))
     point_cache.write(tmp_path / "body_0.pc2", frames)
-    scene = scene_file.Scene('é.001 "x": #', "garment.obj", 3, 24.0, sample_fps=24.0)
-    scene.pins = scene_file.Pins([0, 5], moved)
+    cloth = scene_file.Cloth('é.001 "x": #', "garment.obj", pins=scene_file.Pins([0, 5], moved))
+    scene = scene_file.Scene([cloth], 3, 24.0, sample_fps=24.0)
     scene.obstacles = [scene_file.Obstacle("body", "body_0.obj", "body_0.pc2")]
     (tmp_path / "scene.yaml").write_text(scene_file.scene_text(scene))
     run = program.Run(PROGRAM, ["simulate", tmp_path / "scene.yaml", "--out", tmp_path / "run", "--no-view"])
@@ -202,6 +205,18 @@ def test_frames_with_pairs():
     assert bad == {13: 2, 16: 6, 25: 1, 28: 4}
     assert audit.ranges(bad, 3) == [(13, 16, 6), (25, 28, 4)]
     assert audit.ranges({}, 3) == []
+
+
+def test_the_strip_on_the_timeline():
+    place = lambda frame: 10 * frame - 100  # 10 pixels a frame, from frame 10 on
+    corners, triangles = audit.strip([(1, 2), (9, 12), (20, 20), (40, 50)], place, 300, 7)
+    assert corners[:4] == [(0, 0), (25, 0), (25, 7), (0, 7)]  # begins left of what is shown
+    assert corners[4:8] == [(95, 0), (105, 0), (105, 7), (95, 7)]
+    assert corners[8] == (295, 0) and max(x for x, _ in corners) == 300 and len(corners) == 12
+    assert triangles == [(k + a, k + b, k + c) for k in (0, 4, 8) for a, b, c in ((0, 1, 2), (0, 2, 3))]
+    thin, _ = audit.strip([(1000, 1000)], lambda frame: 0.1 * frame, 300, 7)
+    assert thin[1][0] - thin[0][0] == 2  # seen all the same
+    assert audit.strip([(1, 5)], place, 300, 7) == audit.strip([], place, 300, 7) == ([], [])
 
 
 def test_the_verdict():

@@ -54,6 +54,12 @@ def test_resume(seen):
     assert found["resumed"]["message"] == f"{FRAMES} of {FRAMES} frames, clean" and found["resumed"]["clean"]
 
 
+def test_frames_with_pairs_are_a_red_strip_on_the_timeline(seen):
+    found, _ = seen
+    print(f"red columns: {found['before']} without frames with pairs, {found['strip']} with 21 of them")
+    assert found["before"] == 0 and found["strip"] > 20
+
+
 def test_a_fault_is_shown(seen):
     found, _ = seen
     what, cure = found["fault"]["error"].split("\n")

@@ -45,6 +45,9 @@ fake::World rumpled() {
   state.elastic = Points::Zero(state.x.rows(), 3);
   fake::jitter(state.elastic, 1e-2, 4);
   state.acceleration = Eigen::RowVector3d(0, -9.81, 0).replicate(state.x.rows(), 1);
+  state.worn_motion = state.worn_offset = Points::Zero(state.x.rows(), 3);
+  fake::jitter(state.worn_motion, 3e-3, 6);
+  fake::jitter(state.worn_offset, 8e-3, 7);
   state.frames.assign(static_cast<std::size_t>(state.x.rows()), some_turn());
   world.scene.types[3] = pinned_vertex;
   state.guess.row(3) = state.target.row(3);
@@ -55,7 +58,7 @@ void turn(fake::World& world, const Mat3& by) {
   GraphState& s = world.state;
   world.scene.rest = turned(world.scene.rest, by);
   for (Points* points : {&s.x, &s.previous, &s.target, &s.velocity, &s.body, &s.body_previous, &s.body_target, &s.guess,
-                         &s.elastic, &s.acceleration})
+                         &s.elastic, &s.acceleration, &s.worn_motion, &s.worn_offset})
     *points = turned(*points, by);
   for (Mat3& frame : s.frames) frame = by * frame * by.transpose();
 }
@@ -102,6 +105,20 @@ TEST_CASE("carried frames: the identity where there is no frame, or no pose", "[
   for (const Mat3& frame : turned_frames(surface, mesh.x, Points::Constant(5, 3, std::nan(""))))
     CHECK(frame == Mat3::Identity());
   for (const Mat3& frame : turned_frames(surface, Points::Zero(5, 3), after)) CHECK(frame == Mat3::Identity());
+}
+
+TEST_CASE("carried frames: the turn about the vertical that brings points nearest", "[graph][carried_base]") {
+  Points from = fake::grid(4, 5).x;
+  fake::jitter(from, 3e-3, 5);
+  for (const double angle : {0.0, 0.4, -2.9}) {
+    const Mat3 by = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+    Points to = turned(from, by).rowwise() + Eigen::RowVector3d(1, 2, 3);
+    CHECK((turn_about_vertical(from, to) - by).norm() < 1e-9);
+    to.row(4).setConstant(std::nan(""));
+    CHECK((turn_about_vertical(from, to) - by).norm() < 1e-9);
+  }
+  CHECK(turn_about_vertical(from, Points::Zero(20, 3)) == Mat3::Identity());
+  CHECK(turn_about_vertical(from, Points::Constant(20, 3, std::nan(""))) == Mat3::Identity());
 }
 
 TEST_CASE("carried base: an output of zero is the guess, bit for bit", "[graph][carried_base]") {
@@ -167,6 +184,33 @@ TEST_CASE("student features: the guess and the forces left at it", "[graph][carr
   CHECK((columns(7, at + 6) - compressed(inertia)).norm() < 1e-4);
   CHECK(columns(3, at + 3).isZero(0));  // pinned
   CHECK(columns(3, at + 6).isZero(0));
+  CHECK((columns(3, at + 9) - s.worn_motion.row(3)).norm() < 1e-8);
+  CHECK((columns(7, at + 12) - s.worn_offset.row(7)).norm() < 1e-8);
+  fake::World bare = world;
+  bare.state.worn_motion.resize(0, 3);
+  bare.state.worn_offset.resize(0, 3);
+  CHECK(raw_graph(bare).nodes.middleCols<6>(at + 9).isZero(0));
+}
+
+TEST_CASE("student features: from its heading a turned state looks the same, and its cloth is the same, turned",
+          "[graph][carried_base]") {
+  const fake::World world = rumpled();
+  fake::World other = world;
+  const Mat3 by = Eigen::AngleAxisd(2.1, Vec3::UnitY()).toRotationMatrix();
+  turn(other, by);
+  other.scene.rest = world.scene.rest;
+  other.state.heading = by;
+  for (std::size_t v = 0; v < other.state.frames.size(); ++v) other.state.frames[v] = by * world.state.frames[v];
+  const Graph graph = raw_graph(world), turned_graph = raw_graph(other);
+  CHECK((graph.nodes - turned_graph.nodes).cwiseAbs().maxCoeff() < 1e-5f);
+  for (std::size_t k = 0; k < graph.edge_sets.size(); ++k)
+    CHECK((graph.edge_sets[k].features - turned_graph.edge_sets[k].features).cwiseAbs().maxCoeff() < 1e-5f);
+  const RestGraph rest = make_rest_graph(world.scene, student());
+  const FeatureRows decoded = some_output(20);
+  CHECK((turned(integrate(rest, world.state, student(), output, decoded).x, by) -
+         integrate(rest, other.state, student(), output, decoded).x)
+            .cwiseAbs()
+            .maxCoeff() < 1e-9);
 }
 
 TEST_CASE("student features: turning all turns vectors and leaves the rest; moving all changes nothing",
@@ -177,9 +221,9 @@ TEST_CASE("student features: turning all turns vectors and leaves the rest; movi
   turn(other, quarter_turn());
   const Graph turned_graph = raw_graph(other);
   const NodeColumns at(student());
-  const int first = at.objective;  // body: 4 vectors among 14 columns, guess: 3 vectors
-  const std::vector<int> vectors{0,          at.normal,  first,      first + 3, first + 6,
-                                 first + 11, first + 14, first + 17, first + 20};
+  const int first = at.objective;  // body: 4 vectors among 14 columns, guess: 5 vectors
+  const std::vector<int> vectors{0,          at.normal,  first,      first + 3,  first + 6, first + 11,
+                                 first + 14, first + 17, first + 20, first + 23, first + 26};
   FeatureRows wanted = graph.nodes;
   for (const int column : vectors)
     wanted.middleCols<3>(column) =

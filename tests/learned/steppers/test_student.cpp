@@ -141,16 +141,55 @@ TEST_CASE("student: the frames that turn its output are those of the skinned tar
   set_carried_base(worn.scene, from, worn.drives[1], frame_dt, state);
   REQUIRE(state.frames.size() == 56);
   const Mat3 turn = Eigen::AngleAxisd(0.04, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
-  CHECK((state.frames[10] - turn).norm() < 1e-9);
+  CHECK((state.frames[10] - turn * state.heading).norm() < 1e-9);
+  const Drive &before = worn.drives[0], &now = worn.drives[1];
+  CHECK((state.worn_motion - (now.skinned_targets - before.skinned_targets)).norm() < 1e-12);
+  CHECK((state.worn_offset - (from.x - before.skinned_targets)).norm() < 1e-12);
+  const double angle = std::atan2(state.heading(0, 2), state.heading(0, 0));
+  CHECK(angle == Approx(0.08).epsilon(0.1));  // most of the turn is about the vertical
+  CHECK((state.heading - Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix()).norm() < 1e-12);
   from.memory.clear();  // nothing is known of the last frame
   set_carried_base(worn.scene, from, worn.drives[1], frame_dt, state);
   CHECK(state.frames.empty());
+  CHECK(state.heading == Mat3::Identity());
+  CHECK(state.worn_offset.rows() == 0);
   Drive bare = worn.drives[1];
   bare.skinned_targets.resize(0, 3);
   bare.acceleration = {0, -9.81, 0};
   set_carried_base(worn.scene, from, bare, frame_dt, state);
   CHECK(state.frames.empty());
   CHECK(state.guess(20, 1) == Approx(from.x(20, 1) - 9.81 * frame_dt * frame_dt));
+}
+
+TEST_CASE("student: a scene that is turned about the vertical gives the same cloth, turned", "[learned][student]") {
+  const fake::LearnedCase worn = worn_sheet(4);
+  const Mat3 by = Eigen::AngleAxisd(2.3, Vec3::UnitY()).toRotationMatrix();
+  const auto turned = [&](const Points& x) -> Points { return x * by.transpose(); };
+  const fake::NarrowNetwork network = fake::narrow_network("student");
+  const auto here = learned(worn.scene, network), there = learned(worn.scene, network);  // the rest shape is the same
+  State from = worn.state;
+  int compared = 0;
+  for (const Drive& drive : worn.drives) {
+    State other = from;
+    other.x = turned(from.x);
+    other.v = turned(from.v);
+    other.obstacles = {turned(from.obstacles[0])};
+    for (MemoryBlock& block : other.memory) block.rows = (block.rows * by.transpose()).eval();
+    Drive same = drive;
+    same.skinned_targets = turned(drive.skinned_targets);
+    same.obstacles = {turned(drive.obstacles[0])};
+    same.pins = turned(drive.pins);
+    State to, turned_to;
+    REQUIRE(here->step(from, drive, frame_dt, to).status == StepStatus::accepted);
+    REQUIRE(there->step(other, same, frame_dt, turned_to).status == StepStatus::accepted);
+    if (carried_targets(from)) {  // before, nothing is known of how the cloth is worn
+      CHECK((turned(to.x) - turned_to.x).cwiseAbs().maxCoeff() < 1e-7);
+      CHECK((to.x - carried_guess(worn.scene, from, drive, frame_dt)).cwiseAbs().maxCoeff() > 1e-5);
+      ++compared;
+    }
+    from = std::move(to);
+  }
+  CHECK(compared == 3);
 }
 
 TEST_CASE("student: random weights end clean behind the response and behind a rough solve",
