@@ -7,7 +7,7 @@
 #include "collision/audit/audit_inside.hpp"
 #include "collision/audit/audit_memory.hpp"
 #include "collision/audit/audit_pair.hpp"
-#include "collision/audit/bisection.hpp"
+#include "collision/audit/box_pairs.hpp"
 #include "collision/audit/moving_pair.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/floating_point.hpp"
@@ -110,11 +110,10 @@ void judge_body_pair(const Triangle& a, const Triangle& c, Audit& found) {
   if (intersect(a, c)) found.obstacle_pairs.emplace_back(a.number, c.number);
 }
 
-void audit_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, bool with_self, AuditBudget& budget,
+void audit_part(const BoxPairs& pairs, int part, const Soup& cloth, const Soup& bodies, AuditBudget& budget,
                 Audit& found) {
-  visit_pairs(
-      cell, cloth.boxes, bodies.boxes, with_self, budget,
-      [&](int a, int b) { judge_pair(cloth.triangles[a], cloth.triangles[b], found); },
+  pairs.visit(
+      part, budget, [&](int a, int b) { judge_pair(cloth.triangles[a], cloth.triangles[b], found); },
       [&](int a, int c) { judge_body_pair(cloth.triangles[a], bodies.triangles[c], found); });
 }
 
@@ -165,8 +164,8 @@ double squared_box_gap(const ExactBox& a, const ExactBox& b, double margin) {
   return sum;
 }
 
-// Least squared gap of the pairs in a cell, or `bound` if none is nearer.
-double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, double margin, double bound,
+// Least squared gap of the pairs in a part of the search, or `bound` if none is nearer.
+double gap_in_part(const BoxPairs& pairs, int part, const Soup& cloth, const Soup& bodies, double margin, double bound,
                    AuditBudget& budget) {
   double least = bound;
   const auto take = [&](const Soup& second, int a, int b) {
@@ -175,8 +174,8 @@ double gap_in_cell(const Cell& cell, const Soup& cloth, const Soup& bodies, doub
     const Triangle &s = cloth.triangles[a], &t = second.triangles[b];
     least = std::min(least, intersect(s, t) ? 0.0 : squared_gap(s.corners, t.corners));
   };
-  visit_pairs(
-      cell, cloth.boxes, bodies.boxes, true, budget,
+  pairs.visit(
+      part, budget,
       [&](int a, int b) {
         if (shared_vertices(cloth.triangles[a].vertices, cloth.triangles[b].vertices) == 0) take(cloth, a, b);
       },
@@ -255,12 +254,12 @@ Audit audit(const Surface& cloth, const Points& x, std::span<const AuditBody> ob
     }
   }
   const Soup mine = soup_of(cloth, x, 0), others = soup_near(mine, obstacles, 0);
-  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
-  const int count = static_cast<int>(cells.size());
-  std::vector<Audit> found(cells.size());
+  const BoxPairs pairs(mine.boxes, others.boxes, self);
+  const int count = pairs.parts();
+  std::vector<Audit> found(static_cast<std::size_t>(count));
   AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, budget, found[r]);
+  for (int r = 0; r < count; ++r) audit_part(pairs, r, mine, others, budget, found[r]);
   budget.check();
 
   Audit result = joined_and_sorted(found);
@@ -274,12 +273,12 @@ double min_gap(const Surface& cloth, const Points& x, std::span<const AuditBody>
   // A box grows by half the horizon on each side, and a little more for rounding.
   const double margin = 0.5 * horizon * (1 + 1e-9);
   const Soup mine = soup_of(cloth, x, margin), others = soup_near(mine, obstacles, margin);
-  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, true);
-  const int count = static_cast<int>(cells.size());
-  std::vector<double> least(cells.size());
+  const BoxPairs pairs(mine.boxes, others.boxes, true);
+  const int count = pairs.parts();
+  std::vector<double> least(static_cast<std::size_t>(count));
   AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) least[r] = gap_in_cell(cells[r], mine, others, margin, horizon * horizon, budget);
+  for (int r = 0; r < count; ++r) least[r] = gap_in_part(pairs, r, mine, others, margin, horizon * horizon, budget);
   budget.check();
   const double nearest = least.empty() ? horizon * horizon : *std::min_element(least.begin(), least.end());
   return nearest < horizon * horizon ? std::sqrt(nearest) : std::numeric_limits<double>::infinity();

@@ -8,8 +8,8 @@
 
 namespace selvedge {
 
-// Independent proof that a state is clean: its own broad phase (bisection of space), its own exact tests of triangles
-// and of sides. It shares only surfaces and exact orientation with proximity, CCD and response.
+// Independent proof that a state is clean: its own broad phase (a tree of boxes in double), its own exact tests of
+// triangles and of sides. It shares only surfaces and exact orientation with proximity, CCD and response.
 struct Audit {
   std::vector<std::pair<int, int>> self_pairs;      // intersecting cloth triangles that share no vertex
   std::vector<std::pair<int, int>> vertex_pairs;    // cloth triangles that share one vertex and cross along a segment

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "collision/audit/audit_pair.hpp"
-#include "collision/audit/bisection.hpp"
+#include "collision/audit/box_pairs.hpp"
 #include "collision/exact/orientation.hpp"
 
 namespace selvedge {
@@ -57,12 +57,21 @@ void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surfac
     boxes.push_back({{lo.x(), lo.y(), lo.z()}, {hi.x(), hi.y(), hi.z()}});
   }
   AuditBudget budget(boxes.size() + faces.size());
-  for (const Cell& cell : bisect(boxes, faces, false))
-    visit_pairs(
-        cell, boxes, faces, false, budget, [](int, int) {},
-        [&](int i, int t) {
+  const ExactBox round_rays = hull_of(boxes);
+  std::vector<int> near;
+  std::vector<ExactBox> near_boxes;
+  for (int t = 0; t < static_cast<int>(faces.size()); ++t)
+    if (overlap(faces[t], round_rays)) {
+      near.push_back(t);
+      near_boxes.push_back(faces[t]);
+    }
+  const BoxPairs pairs(boxes, near_boxes, false);
+  for (int part = 0; part < pairs.parts(); ++part)
+    pairs.visit(
+        part, budget, [](int, int) {},
+        [&](int i, int k) {
           Ray& ray = rays[i];
-          const int* v = body.triangles.data() + 3 * t;
+          const int* v = body.triangles.data() + 3 * near[k];
           const Passage found = passage(ray.from, ray.to, row(y, v[0]), row(y, v[1]), row(y, v[2]));
           ray.odd ^= found == Passage::through;
           ray.on_face |= found == Passage::on_face;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "collision/audit/bisection.hpp"
+#include "collision/audit/box_pairs.hpp"
 
 namespace selvedge {
 namespace {
@@ -146,9 +146,9 @@ bool measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
   mine.add(cloth, memory.reference[0], margin);
   for (std::size_t k = 0; k < bodies.size(); ++k) others.add(*bodies[k].surface, memory.reference[k + 1], margin);
   const double rounding = 1e-13 * largest(memory.reference);
-  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
-  const int count = static_cast<int>(cells.size());
-  std::vector<std::vector<AuditMemory::Pair>> found_self(cells.size()), found_body(cells.size());
+  const BoxPairs pairs(mine.boxes, others.boxes, self);
+  const int count = pairs.parts();
+  std::vector<std::vector<AuditMemory::Pair>> found_self(count), found_body(count);
   AuditBudget budget(mine.boxes.size() + others.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int c = 0; c < count; ++c) {
@@ -156,9 +156,8 @@ bool measure(AuditMemory& memory, const Surface& cloth, std::span<const MovingBo
       pair.gap = std::max(0.0, pair.gap - rounding);
       if (pair.gap < memory.reach) list.push_back(pair);
     };
-    visit_pairs(
-        cells[c], mine.boxes, others.boxes, self, budget,
-        [&](int a, int b) { keep(found_self[c], measured(mine, a, b)); },
+    pairs.visit(
+        c, budget, [&](int a, int b) { keep(found_self[c], measured(mine, a, b)); },
         [&](int a, int b) {
           keep(found_body[c], {a, b, gap_of_triangles(mine.corners[a], others.corners[b]), 0});
         });

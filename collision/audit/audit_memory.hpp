@@ -8,8 +8,9 @@
 
 namespace selvedge {
 
-// Where a motion ended, and which triangles have boxes within `reach` of each other there. So one search for pairs
-// serves the motion and the state at its end, rounded to float.
+// Where a motion ended, and which triangles were not proven to be apart there, with `reach` to spare in each
+// coordinate; pairs that share an edge may be left out. So one search and its proofs serve the motion and the state at
+// its end, rounded to float.
 struct MotionEnd {
   std::vector<Points> x;                                    // cloth, then obstacles; empty: none is known
   double reach = 0;                                         // [m]

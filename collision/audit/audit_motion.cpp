@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "collision/audit/audit_memory.hpp"
-#include "collision/audit/bisection.hpp"
+#include "collision/audit/box_pairs.hpp"
 #include "collision/audit/moving_pair.hpp"
 #include "collision/audit/proof_budget.hpp"
+#include "collision/audit/stars.hpp"
 #include "collision/geometry/floating_point.hpp"
 
 namespace selvedge {
@@ -16,13 +17,24 @@ struct Side {
   struct Face {
     const MovingBody* body;
     int triangle, first_node;
-    int number;  // as in AuditMemory::Pair
+    int number;                 // as in AuditMemory::Pair
+    std::array<int, 3> corner;  // the nodes
 
     const Surface& surface() const { return *body->surface; }
   };
   std::vector<Face> faces;
-  std::vector<ExactBox> start, end, boxes;  // at the start, at the end, and round both
+  std::vector<ExactBox> start, end, boxes;  // at the start, within reach of the end, and round all of the motion
+
+  void reserve(std::size_t count) {
+    faces.reserve(count);
+    for (std::vector<ExactBox>* list : {&start, &end, &boxes}) list->reserve(count);
+  }
 };
+
+Side::Face face_of(const MovingBody& body, int triangle, int first_node, int number) {
+  const int* v = body.surface->triangles.data() + 3 * triangle;
+  return {&body, triangle, first_node, number, {first_node + v[0], first_node + v[1], first_node + v[2]}};
+}
 
 // Is one of the faces above the other along an axis, at both ends and so all the way? This separates faces that move
 // along together, without rounding, however far they move.
@@ -34,13 +46,6 @@ bool stay_apart_along_an_axis(const Side& a, int i, const Side& b, int j) {
   return apart;
 }
 
-// May two faces be within `reach` of each other at the end?
-bool meet_at_end(const ExactBox& a, const ExactBox& b, double reach) {
-  bool meet = true;
-  for (int k = 0; k < 3; ++k) meet &= (a.lo[k] <= b.hi[k] + 2 * reach) & (b.lo[k] <= a.hi[k] + 2 * reach);
-  return meet;
-}
-
 ExactBox grown(ExactBox box, double margin) {
   for (int k = 0; k < 3; ++k) {
     box.lo[k] -= margin;
@@ -49,24 +54,40 @@ ExactBox grown(ExactBox box, double margin) {
   return box;
 }
 
+// On which sides of the bounds a vertex, with a margin round it, lies at the start and at the end: one bit for each.
+unsigned sides_outside(const MovingBody& body, int v, double margin, const ExactBox& bounds) {
+  const double *from = body.x0->data() + 3 * v, *to = body.x1->data() + 3 * v;
+  unsigned sides = 0;
+  for (int k = 0; k < 3; ++k) {
+    sides |= static_cast<unsigned>((from[k] - margin > bounds.hi[k]) & (to[k] - margin > bounds.hi[k])) << k;
+    sides |= static_cast<unsigned>((from[k] + margin < bounds.lo[k]) & (to[k] + margin < bounds.lo[k])) << (3 + k);
+  }
+  return sides;
+}
+
 // Adds the faces whose boxes, grown by the margin, overlap the bounds. Returns the number of vertices that are not
 // finite.
 int add(const MovingBody& body, int first_node, int first_number, double margin, const ExactBox& bounds, Side& side) {
+  constexpr unsigned bad = 1U << 6;
   const Surface& s = *body.surface;
-  std::vector<char> good(s.vertex_count);
-  for (int v = 0; v < s.vertex_count; ++v) good[v] = body.x0->row(v).allFinite() && body.x1->row(v).allFinite();
-  for (int t = 0; t < s.triangles.rows(); ++t) {
-    if (!good[s.triangles(t, 0)] || !good[s.triangles(t, 1)] || !good[s.triangles(t, 2)]) continue;
-    const Side::Face face{&body, t, first_node, first_number + t};
-    const ExactBox start = box_of(s, *body.x0, t), end = box_of(s, *body.x1, t),
-                   both = grown(hull_of(std::array{start, end}), margin);
-    if (!overlap(both, bounds)) continue;
-    side.faces.push_back(face);
-    side.start.push_back(start);
-    side.end.push_back(end);
-    side.boxes.push_back(both);
+  std::vector<unsigned> outside(static_cast<std::size_t>(s.vertex_count));
+  int nonfinite = 0;
+  for (int v = 0; v < s.vertex_count; ++v) {
+    const bool good = body.x0->row(v).allFinite() && body.x1->row(v).allFinite();
+    outside[v] = good ? sides_outside(body, v, margin, bounds) : bad;
+    nonfinite += !good;
   }
-  return static_cast<int>(std::count(good.begin(), good.end(), 0));
+  side.reserve(side.faces.size() + static_cast<std::size_t>(s.triangles.rows()));
+  for (int t = 0; t < s.triangles.rows(); ++t) {
+    const unsigned a = outside[s.triangles(t, 0)], b = outside[s.triangles(t, 1)], c = outside[s.triangles(t, 2)];
+    if ((a & b & c) != 0 || ((a | b | c) & bad) != 0) continue;
+    const ExactBox start = box_of(s, *body.x0, t), end = box_of(s, *body.x1, t);
+    side.faces.push_back(face_of(body, t, first_node, first_number + t));
+    side.start.push_back(start);
+    side.end.push_back(grown(end, margin));
+    side.boxes.push_back(grown(hull_of(std::array{start, end}), margin));
+  }
+  return nonfinite;
 }
 
 struct Node {
@@ -108,11 +129,11 @@ struct FeaturePair {
   }
 };
 
-// What was found in one cell, or in all of them.
+// What was found in a part of the search, or in all of it.
 struct Found {
   std::vector<PassedPair> passed;
   std::vector<FeaturePair> open;                              // not decided by few_parts
-  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // within reach at the end
+  std::vector<std::pair<int, int>> self_at_end, body_at_end;  // as in MotionEnd
 };
 
 struct Asked {
@@ -126,7 +147,7 @@ struct PairAudit {
   ProofWatch& watch;
   Found& found;
 
-  bool same(int i, int j) const { return corner(a, i).number() == corner(b, j).number(); }
+  bool same(int i, int j) const { return a.corner[i % 3] == b.corner[j % 3]; }
 
   void take(bool edges, const std::array<Node, 4>& nodes) const {
     if (watch.ended()) return;
@@ -172,9 +193,17 @@ struct PairAudit {
     return relative_to<4>(s, {s, corner(a, alone[0] + 2), corner(a, alone[0]), corner(b, alone[1])});
   }
 
-  bool triangles_stay_apart() const {
-    int shared = 0, at_a = 0, at_b = 0;
+  // Do they belong to a star that is clean?
+  bool in_a_star(const std::vector<char>& clean) const {
     for (int i = 0; i < 3; ++i)
+      if (clean[a.corner[i]] && (same(i, 0) || same(i, 1) || same(i, 2))) return true;
+    return false;
+  }
+
+  // Also where each coordinate is off by up to `room`, unless they share an edge.
+  bool triangles_stay_apart(double room) const {
+    int shared = 0, at_a = 0, at_b = 0;
+    for (int i = 0; i < 3 && a.body == b.body; ++i)
       for (int j = 0; j < 3; ++j)
         if (same(i, j)) {
           ++shared;
@@ -186,38 +215,50 @@ struct PairAudit {
     const Node origin = corner(a, at_a);
     if (shared == 1)
       return stay_apart_beside(relative_to<2>(origin, {corner(a, at_a + 1), corner(a, at_a + 2)}),
-                               relative_to<2>(origin, {corner(b, at_b + 1), corner(b, at_b + 2)}));
+                               relative_to<2>(origin, {corner(b, at_b + 1), corner(b, at_b + 2)}), room);
     return stay_apart(relative_to<3>(origin, {corner(a, 0), corner(a, 1), corner(a, 2)}),
-                      relative_to<3>(origin, {corner(b, 0), corner(b, 1), corner(b, 2)}));
+                      relative_to<3>(origin, {corner(b, 0), corner(b, 1), corner(b, 2)}), room);
   }
 
   // Every vertex and edge is tested with the one face that owns it, so that each pair is tested once.
-  void operator()() const {
-    if (watch.given_up() || triangles_stay_apart()) return;
+  void features() const {
     vertices(a, b);
     vertices(b, a);
     edges();
   }
 };
 
-// reach: as in MotionEnd.
-void audit_cell(const Cell& cell, const Side& cloth, const Side& bodies, bool self, const Asked& asked, double reach,
-                AuditBudget& budget, ProofBudget& proofs, Found& found) {
+// The faces of a motion, and what is known of them. reach: as in MotionEnd.
+struct MovingFaces {
+  Side cloth, bodies;
+  std::vector<char> clean;  // of each vertex of the cloth: clean_stars
+  double reach;
+};
+
+// Audits the motion of a face of the cloth and one of `other`. Lists the pair at the end unless it is proven apart
+// there.
+void audit_pair(const MovingFaces& faces, const Side& other, int i, int j, const PairAudit& pair,
+                std::vector<std::pair<int, int>>& at_end) {
+  if (stay_apart_along_an_axis(faces.cloth, i, other, j)) return;
+  if (!pair.watch.given_up() && pair.triangles_stay_apart(faces.reach)) return;
+  if (overlap(faces.cloth.end[i], other.end[j])) at_end.emplace_back(pair.a.number, pair.b.number);
+  if (pair.watch.given_up() || (faces.reach > 0 && pair.triangles_stay_apart(0))) return;
+  pair.features();
+}
+
+void audit_part(const BoxPairs& pairs, int part, const MovingFaces& faces, const Asked& asked, AuditBudget& budget,
+                ProofBudget& proofs, Found& found) {
   ProofWatch watch(budget, proofs);
-  visit_pairs(
-      cell, cloth.boxes, bodies.boxes, self, budget,
+  pairs.visit(
+      part, budget,
       [&](int a, int b) {
-        const auto [first, second] = std::minmax(a, b);
-        if (meet_at_end(cloth.end[a], cloth.end[b], reach))
-          found.self_at_end.emplace_back(cloth.faces[first].number, cloth.faces[second].number);
-        if (stay_apart_along_an_axis(cloth, a, cloth, b)) return;
-        PairAudit{cloth.faces[first], cloth.faces[second], asked, watch, found}();
+        const auto [i, j] = std::minmax(a, b);
+        const PairAudit pair{faces.cloth.faces[i], faces.cloth.faces[j], asked, watch, found};
+        if (!pair.in_a_star(faces.clean)) audit_pair(faces, faces.cloth, i, j, pair, found.self_at_end);
       },
       [&](int a, int c) {
-        if (meet_at_end(cloth.end[a], bodies.end[c], reach))
-          found.body_at_end.emplace_back(cloth.faces[a].number, bodies.faces[c].number);
-        if (stay_apart_along_an_axis(cloth, a, bodies, c)) return;
-        PairAudit{cloth.faces[a], bodies.faces[c], asked, watch, found}();
+        const PairAudit pair{faces.cloth.faces[a], faces.bodies.faces[c], asked, watch, found};
+        audit_pair(faces, faces.bodies, a, c, pair, found.body_at_end);
       });
 }
 
@@ -232,10 +273,13 @@ Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std:
                   const Asked& asked, AuditBudget& budget, ProofBudget& proofs) {
   Found found;
   ProofWatch watch(budget, proofs);
-  const auto face = [](const MovingBody& body, int t, int first_node) { return Side::Face{&body, t, first_node, t}; };
+  const auto look_at = [&](const Side::Face& a, const Side::Face& b) {
+    const PairAudit pair{a, b, asked, watch, found};
+    if (!watch.given_up() && !pair.triangles_stay_apart(0)) pair.features();
+  };
   for (const AuditMemory::Pair& pair : questions.self_pairs) {
-    const Side::Face a = face(cloth, std::min(pair.a, pair.b), 0), b = face(cloth, std::max(pair.a, pair.b), 0);
-    PairAudit{a, b, asked, watch, found}();
+    const auto [a, b] = std::minmax(pair.a, pair.b);
+    look_at(face_of(cloth, a, 0, a), face_of(cloth, b, 0, b));
   }
   for (const AuditMemory::Pair& pair : questions.body_pairs) {
     const MovingBody* body = bodies.data();
@@ -244,8 +288,7 @@ Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std:
       t -= static_cast<int>(body->surface->triangles.rows());
       first_node += body->surface->vertex_count;
     }
-    const Side::Face a = face(cloth, pair.a, 0), b = face(*body, t, first_node);
-    PairAudit{a, b, asked, watch, found}();
+    look_at(face_of(cloth, pair.a, 0, pair.a), face_of(*body, t, first_node, pair.b));
   }
   return found;
 }
@@ -298,21 +341,21 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
     }
   }
   const double reach = memory ? reach_of_rounding(moving, bodies) : 0;
-  Side mine, others;
-  result.nonfinite = add(moving, 0, 0, reach, everywhere, mine);
-  const ExactBox round_cloth = hull_of(mine.boxes);
+  MovingFaces faces{{}, {}, self ? clean_stars(moving, reach) : std::vector<char>(), reach};
+  result.nonfinite = add(moving, 0, 0, reach, everywhere, faces.cloth);
+  const ExactBox round_cloth = hull_of(faces.cloth.boxes);
   int first_node = cloth.vertex_count, first_number = 0;
   for (const MovingBody& body : bodies) {
-    result.nonfinite += add(body, first_node, first_number, reach, round_cloth, others);
+    result.nonfinite += add(body, first_node, first_number, reach, round_cloth, faces.bodies);
     first_node += body.surface->vertex_count;
     first_number += static_cast<int>(body.surface->triangles.rows());
   }
-  const std::vector<Cell> cells = bisect(mine.boxes, others.boxes, self);
-  const int count = static_cast<int>(cells.size());
-  std::vector<Found> parts(cells.size());
-  AuditBudget budget(mine.boxes.size() + others.boxes.size());
+  const BoxPairs pairs(faces.cloth.boxes, faces.bodies.boxes, self);
+  const int count = pairs.parts();
+  std::vector<Found> parts(static_cast<std::size_t>(count));
+  AuditBudget budget(faces.cloth.boxes.size() + faces.bodies.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_cell(cells[r], mine, others, self, asked, reach, budget, proofs, parts[r]);
+  for (int r = 0; r < count; ++r) audit_part(pairs, r, faces, asked, budget, proofs, parts[r]);
   Found found = joined(parts, &Found::passed, &Found::open, &Found::self_at_end, &Found::body_at_end);
   conclude(found, max_halvings, budget, proofs, result);
   // A face that was left out as not finite may be finite at the end; then the list would lack its pairs.

@@ -11,6 +11,9 @@ namespace {
 // u for both sides. This is 45 u, with room for the error of halving the time. Underflow adds less than 1e-300.
 double slack_of(const Vec3& m, double reach) { return 5e-15 * m.cwiseAbs().maxCoeff() * reach + 1e-300; }
 
+// The most that two vertices come nearer along m where each coordinate is off by up to `room`.
+double nearer_by(const Vec3& m, double room) { return room > 0 ? 2 * (1 + 1e-14) * m.cwiseAbs().sum() * room : 0; }
+
 template <std::size_t Count>
 double reach_of(const std::array<Vec3, Count>& points) {
   double reach = 0;
@@ -44,8 +47,8 @@ int order(const Range& a, const Range& b, double slack) {
   return b.lo - a.hi > slack ? 1 : a.lo - b.hi > slack ? -1 : 0;
 }
 
-bool separates(const Vec3& m, const MovingPoints<3>& a, const MovingPoints<3>& b, double reach) {
-  const double slack = slack_of(m, reach);
+bool separates(const Vec3& m, const MovingPoints<3>& a, const MovingPoints<3>& b, double reach, double room) {
+  const double slack = slack_of(m, reach) + nearer_by(m, room);
   const int before = order(range_of(m, a.start, 0, 3), range_of(m, b.start, 0, 3), slack);
   return before != 0 && before == order(range_of(m, a.end, 0, 3), range_of(m, b.end, 0, 3), slack);
 }
@@ -131,8 +134,8 @@ Proof proof_for(const MovingPoints<4>& whole, int max_halvings, int most, Separa
   return Proof::apart;
 }
 
-bool is_edge_on(const Vec3& m, const MovingPoints<2>& a, const MovingPoints<2>& b, double reach) {
-  const double slack = slack_of(m, reach);
+bool is_edge_on(const Vec3& m, const MovingPoints<2>& a, const MovingPoints<2>& b, double reach, double room) {
+  const double slack = slack_of(m, reach) + nearer_by(m, room);
   const auto below = [&](const std::array<Vec3, 2>& p) { return range_of(m, p, 0, 2).hi < -slack; };
   const auto above = [&](const std::array<Vec3, 2>& p) { return range_of(m, p, 0, 2).lo > slack; };
   return below(a.start) && above(b.start) && below(a.end) && above(b.end);
@@ -140,24 +143,26 @@ bool is_edge_on(const Vec3& m, const MovingPoints<2>& a, const MovingPoints<2>& 
 
 }  // namespace
 
-bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b) {
+bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b, double room) {
   const double reach = std::max(reach_of(a), reach_of(b));
   const std::array<Vec3, 3> p{a.middle(0), a.middle(1), a.middle(2)}, q{b.middle(0), b.middle(1), b.middle(2)};
-  const Vec3 normal_a = (p[1] - p[0]).cross(p[2] - p[0]), normal_b = (q[1] - q[0]).cross(q[2] - q[0]);
-  if (separates(normal_a, a, b, reach) || separates(normal_b, a, b, reach)) return true;
+  const Vec3 normal_a = (p[1] - p[0]).cross(p[2] - p[0]);
+  if (separates(normal_a, a, b, reach, room)) return true;
+  const Vec3 normal_b = (q[1] - q[0]).cross(q[2] - q[0]);
+  if (separates(normal_b, a, b, reach, room)) return true;
   for (int k = 0; k < 3; ++k)
-    if (separates((p[(k + 1) % 3] - p[k]).cross(normal_a), a, b, reach) ||
-        separates((q[(k + 1) % 3] - q[k]).cross(normal_b), a, b, reach))
+    if (separates((p[(k + 1) % 3] - p[k]).cross(normal_a), a, b, reach, room) ||
+        separates((q[(k + 1) % 3] - q[k]).cross(normal_b), a, b, reach, room))
       return true;
   return false;
 }
 
-bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b) {
+bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b, double room) {
   const double reach = std::max(reach_of(a), reach_of(b));
   const Vec3 toward_a = a.middle(0) + a.middle(1), toward_b = b.middle(0) + b.middle(1);
-  if (is_edge_on(toward_b - toward_a, a, b, reach)) return true;
+  if (is_edge_on(toward_b - toward_a, a, b, reach, room)) return true;
   const double length_a = toward_a.norm(), length_b = toward_b.norm();
-  return is_edge_on(toward_b * length_a - toward_a * length_b, a, b, reach);
+  return is_edge_on(toward_b * length_a - toward_a * length_b, a, b, reach, room);
 }
 
 // Along a perpendicular of the edge, a is in front of s and t, and b behind them. Tilted along the edge the direction

@@ -16,13 +16,13 @@ struct MovingPoints {
 };
 
 // The functions that return bool are proofs: true only if the two sides stay apart from beginning to end in exact
-// arithmetic. False says nothing.
+// arithmetic, and also where each coordinate of a vertex is off by up to `room` [m]. False says nothing.
 
 // Triangles without a common vertex: some direction of their faces separates them all the time.
-bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b);
+bool stay_apart(const MovingPoints<3>& a, const MovingPoints<3>& b, double room = 0);
 
 // Triangles s, a0, a1 and s, b0, b1 with the common vertex s as origin: they share no more than s at any time.
-bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b);
+bool stay_apart_beside(const MovingPoints<2>& a, const MovingPoints<2>& b, double room = 0);
 
 // Triangles s, t, a and s, t, b with the common edge p = s, t and then a, b: the vertex and the edges of one that the
 // other does not share stay apart from it.

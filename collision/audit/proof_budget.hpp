@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "collision/audit/bisection.hpp"
+#include "collision/audit/box_pairs.hpp"
 
 namespace selvedge {
 
@@ -33,8 +33,8 @@ class ProofBudget {
   std::atomic<int> unproven_ = 0;
 };
 
-// Asks before each proof in a cell whether the audit goes on. A proof for coincident edges takes many parts, and a cell
-// may hold many of them, so that asking once per cell would be too rare.
+// Asks before each proof in a part of the search whether the audit goes on. A proof for coincident edges takes many
+// parts, and a part may hold many of them, so that asking once for each part would be too rare.
 class ProofWatch {
  public:
   ProofWatch(AuditBudget& searched, ProofBudget& proofs) : searched_(searched), proofs_(proofs) {}
