@@ -7,6 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
+#include "collision/geometry/require_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -48,6 +49,7 @@ void write_seal(const std::filesystem::path& path) {
 }
 
 long long check_seal(const std::filesystem::path& path) {
+  require_file(path, "weight");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error("cannot open", path.string(), "check the path");
   std::string seal(seal_bytes, '\0');

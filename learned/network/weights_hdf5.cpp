@@ -86,9 +86,11 @@ void write_dataset(const WeightStore& store, const std::string& field, hid_t typ
                    const std::vector<hsize_t>& shape, const void* data) {
   const PropertyId links(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(links.id, 1);
+  const PropertyId creation(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(creation.id, false);  // the same content gives the same bytes at any time
   const SpaceId space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
   const DatasetId dataset(
-      store.good(H5Dcreate2(store.file.id, field.c_str(), type, space.id, links.id, H5P_DEFAULT, H5P_DEFAULT), field,
+      store.good(H5Dcreate2(store.file.id, field.c_str(), type, space.id, links.id, creation.id, H5P_DEFAULT), field,
                  "cannot be written"));
   store.good(H5Dwrite(dataset.id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), field, "cannot be written");
 }

@@ -23,15 +23,16 @@ class EnergyBalance {
   EnergyBalance(const EnergyBalance&) = delete;
   EnergyBalance& operator=(const EnergyBalance&) = delete;
   // Judges an accepted step; positions and velocities must be finite. The memory of `to` gets the sum of unexplained
-  // gains; after a step that is `from_nowhere` the sum is 0 again.
-  EnergyGain operator()(const State& from, const Drive&, State& to);
+  // gains; after a step that is `from_nowhere` the sum is 0 again. `proposed`: no solver has balanced the end, so that
+  // the work is that of WorkBound::of_world.
+  EnergyGain operator()(const State& from, const Drive&, State& to, bool proposed = false);
 
   // Sets the doubt `energy_gain` of an accepted step that is `from_nowhere`.
   void label(const State& from, const Drive&, State& to, StepReport&);
 
  private:
   Energies energies_of(const State&, const Vec3& acceleration);
-  double work_of(const State& from, const State& to, const Drive&);
+  double work_of(const State& from, const State& to, const Drive&, bool proposed);
 
   Scene scene_;  // without the forces that the stepper ignores
   EnergyTerms terms_;

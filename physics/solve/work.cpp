@@ -31,31 +31,72 @@ WorkBound::WorkBound(const Scene& scene)
 
 void WorkBound::unnamed_forces(const State& from, const State& to, const Drive& drive) {
   const double dt = to.time - from.time;
-  Points before, after;
-  elastic_derivatives(elastic_, from.x, scratch_, &before, nullptr);
+  Points after;
+  elastic_derivatives(elastic_, from.x, scratch_, &elastic_before_, nullptr);
   elastic_derivatives(elastic_, to.x, scratch_, &after, nullptr);
-  wind_ = wind_forces(scene_, to.x, to.v, drive.wind);
+  const Points wind = wind_forces(scene_, to.x, to.v, drive.wind);
   unnamed_.resize(from.x.rows());
+  wind_work_ = Eigen::VectorXd::Zero(from.x.rows());
   for (const Cloth& cloth : scene_.cloths)
     for (int i = cloth.first_vertex; i < cloth.first_vertex + cloth.vertex_count; ++i) {
       const Material& material = cloth.material;
+      const Vec3 before = row(elastic_before_, i);
       // A spring between cloths of different damping counts at each end with the damping of that end's cloth.
       const Vec3 inertia = masses_[i] * ((row(to.v, i) - row(from.v, i)) / dt - drive.acceleration +
                                          material.mass_damping * row(to.v, i)) +
-                           material.stiffness_damping / dt * (row(after, i) - row(before, i)) - row(wind_, i);
-      unnamed_[i] = std::max((inertia + row(before, i)).norm(), (inertia + row(after, i)).norm());
+                           material.stiffness_damping / dt * (row(after, i) - before) - row(wind, i);
+      unnamed_[i] = std::max((inertia + before).norm(), (inertia + row(after, i)).norm());
+      wind_work_[i] = wind.row(i).norm() * (row(to.x, i) - row(from.x, i)).norm();
     }
+}
+
+void WorkBound::bound_by_start(const State& from, const State& to, const Drive& drive) {
+  const double dt = to.time - from.time;
+  unnamed_forces(from, to, drive);
+  const Eigen::VectorXd of_end = unnamed_, wind_of_end = wind_work_;
+  State flight;
+  flight.time = to.time;
+  flight.x = from.x + dt * from.v;
+  for (const int pin : scene_.pins) flight.x.row(pin) = to.x.row(pin);
+  flight.v = (flight.x - from.x) / dt;
+  unnamed_forces(from, flight, drive);
+  const Points wind = wind_forces(scene_, from.x, from.v, drive.wind);
+  held_ = Eigen::VectorXd::Zero(from.x.rows());
+  for (int i = 0; i < from.x.rows(); ++i) {
+    const double force = wind.row(i).norm(), blown = std::min(drive.wind.norm(), force * dt / masses_[i]);
+    held_[i] = (row(elastic_before_, i) - masses_[i] * drive.acceleration - row(wind, i)).norm();
+    wind_work_[i] = std::min(wind_of_end[i], force * dt * (from.v.row(i).norm() + blown));
+  }
+  const Eigen::VectorXd of_flight = unnamed_;
+  unnamed_ = of_end;
+  for (const int pin : scene_.pins) unnamed_[pin] = std::min(of_end[pin], of_flight[pin]);
 }
 
 Work WorkBound::operator()(const State& from, const State& to, const Drive& drive) {
   unnamed_forces(from, to, drive);
+  held_.resize(0);
+  return sum(from, to);
+}
+
+Work WorkBound::of_world(const State& from, const State& to, const Drive& drive) {
+  bound_by_start(from, to, drive);
+  return sum(from, to);
+}
+
+double WorkBound::carrying_force(const State& from, double dt, int vertex, const Vec3& way) const {
+  if (held_.size() == 0) return unnamed_[vertex];
+  const double brought = masses_[vertex] * (way / dt - row(from.v, vertex)).norm() / dt;
+  return std::min(unnamed_[vertex], held_[vertex] + brought);
+}
+
+Work WorkBound::sum(const State& from, const State& to) {
   Work work;
   const Eigen::VectorXd distance = (to.x - from.x).rowwise().norm();
-  for (int i = 0; i < distance.size(); ++i) work.wind += wind_.row(i).norm() * distance[i];
-  std::vector<char> held(static_cast<std::size_t>(distance.size()), 0);
+  for (int i = 0; i < distance.size(); ++i) work.wind += wind_work_[i];
+  std::vector<char> pinned(static_cast<std::size_t>(distance.size()), 0);
   for (const int pin : scene_.pins) {
     work.pins += unnamed_[pin] * distance[pin];
-    held[pin] = 1;
+    pinned[pin] = 1;
   }
   if (!world_.self && world_.obstacles.empty()) return work;
 
@@ -64,14 +105,16 @@ Work WorkBound::operator()(const State& from, const State& to, const Drive& driv
   PathPairs path;
   update_pairs(search_, thickness, nodes0, nodes1, path);
   Eigen::VectorXd carried = Eigen::VectorXd::Zero(distance.size()), pressed = carried;
-  for (const NodePair& pair : path.pairs) {
-    double moved = 0;
-    for (const int node : pair.nodes)
-      if (!world_.is_cloth(node)) moved = std::max(moved, (nodes1.row(node) - nodes0.row(node)).norm());
-    if (moved == 0) continue;
-    for (const int node : pair.nodes)
-      if (world_.is_cloth(node)) raise(carried, node, moved);
-  }
+  for (const NodePair& pair : path.pairs)
+    for (const int node : pair.nodes) {
+      if (world_.is_cloth(node)) continue;
+      const Vec3 way = row(nodes1, node) - row(nodes0, node);
+      const double moved = way.norm();
+      if (moved == 0) continue;
+      for (const int vertex : pair.nodes)
+        if (world_.is_cloth(vertex))
+          raise(carried, vertex, carrying_force(from, to.time - from.time, vertex, way) * moved);
+    }
   for (const Proximity& p : find_proximities(world_, pairs_within(path, nodes0, thickness), nodes0, thickness))
     for (const int node : p.pair.nodes)
       if (world_.is_cloth(node)) raise(pressed, node, p.rest_gap - p.gap);
@@ -82,8 +125,8 @@ Work WorkBound::operator()(const State& from, const State& to, const Drive& driv
         pressed[i] = std::max(pressed[i], distance[i]);
   }
   for (int i = 0; i < distance.size(); ++i) {
-    if (held[i]) continue;
-    work.obstacles += unnamed_[i] * carried[i];
+    if (pinned[i]) continue;
+    work.obstacles += carried[i];
     work.response += unnamed_[i] * pressed[i];
   }
   return work;

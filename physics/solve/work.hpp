@@ -21,22 +21,35 @@ struct Work {
 //   wind       the force of the air times the displacement of the vertex
 //   response   |R| times how far a vertex was pressed closer than the rest gap at the start, which pushing apart may
 //              give back; and |R| times its displacement where it started tangled
-// If the energy of a cloth grows by more, the gain has no source. Holds caches and a reference to the scene.
+// If the energy of a cloth grows by more, the gain has no source.
+//
+// That is a bound for steps whose end balances forces. A proposal's own stretch and speed would count as forces of the
+// world, so that `of_world` takes the smaller of |R| and what the start asks for, whatever is proposed:
+//   pins       |R| of a flight: the cloth goes on as it moved, and pins go where they are driven
+//   obstacles  what holds the vertex at the start, and what brings it to the velocity of the obstacle in the step
+//   wind       the force of the air at the start, times the largest displacement that it can cause
+// Holds caches and a reference to the scene.
 class WorkBound {
  public:
   explicit WorkBound(const Scene&);
   Work operator()(const State& from, const State& to, const Drive&);
+  Work of_world(const State& from, const State& to, const Drive&);
 
  private:
   void unnamed_forces(const State& from, const State& to, const Drive&);
+  void bound_by_start(const State& from, const State& to, const Drive&);
+  double carrying_force(const State& from, double dt, int vertex, const Vec3& way) const;  // of an obstacle [N]
+  Work sum(const State& from, const State& to);
 
   const Scene& scene_;
   ContactWorld world_;
   PairSearch search_;
   Elastic elastic_;
   Eigen::VectorXd masses_;
-  Eigen::VectorXd unnamed_;  // |R| of every vertex [N]
-  Points wind_;              // [N]
+  Points elastic_before_;
+  Eigen::VectorXd unnamed_;    // |R| of every vertex [N]
+  Eigen::VectorXd wind_work_;  // on every vertex [J]
+  Eigen::VectorXd held_;       // what holds every vertex at the start [N]; empty: nothing is bounded by the start
   AssemblyScratch scratch_;
 };
 

@@ -203,7 +203,8 @@ bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
   if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
   if (work.report.doubts.energy_gain) return true;
   const Timed timed(work.report.seconds.guard);
-  return verdict == Verdict::admitted && energy_(work.from, work.drive, work.to).from_nowhere();
+  const bool proposed = options_.mode == HybridMode::response;  // other modes bound the proposal's elastic energy
+  return verdict == Verdict::admitted && energy_(work.from, work.drive, work.to, proposed).from_nowhere();
 }
 
 void HybridStepper::take_parent_step(Work& work) {

@@ -1,7 +1,6 @@
 #include "pipeline/bodies/makehuman_rig.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <map>
 
@@ -9,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -55,9 +55,7 @@ struct Value {
 };
 
 Json parsed(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in || std::filesystem::is_directory(path)) throw Error("cannot be read", path.string(), "check the path");
+  const std::string text = read_text_file(path, "JSON");
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& problem) {

@@ -49,6 +49,7 @@ std::vector<std::filesystem::path> export_meshes(const AnimatedSurfaces& run, co
     written.push_back(request.file(batch.materials));
     write_file(written.back(), text);
   }
+  const std::vector<NormalSlots> slots = objects ? normal_slots(all) : std::vector<NormalSlots>{};
   for (int i = 0; i < run.frame_count; ++i) {
     const std::vector<PointsF> x = run.frame(i);
     for (const Batch& batch : batches) {
@@ -56,6 +57,7 @@ std::vector<std::filesystem::path> export_meshes(const AnimatedSurfaces& run, co
       written.push_back(request.file(fmt::format("{}_{:05}.{}", batch.file, i, request.format)));
       if (objects)
         write_file(written.back(), objects_text(all.subspan(batch.first, batch.count),
+                                                std::span(slots).subspan(batch.first, batch.count),
                                                 std::span(x).subspan(batch.first, batch.count), batch.materials));
       else
         write_ply(written.back(), x[batch.first].cast<double>(), all[batch.first].triangles);

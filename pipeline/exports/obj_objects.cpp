@@ -6,7 +6,6 @@
 #include <set>
 
 #include "pipeline/exports/export_materials.hpp"
-#include "pipeline/exports/moved_normals.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
 
 namespace selvedge {
@@ -77,11 +76,10 @@ void add_faces(const AnimatedSurface& surface, const NormalSlots& slots, const s
   }
 }
 
-void add_surface(const AnimatedSurface& surface, const PointsF& x, const std::vector<std::string>& materials,
-                 const std::set<std::string>& taken, ObjText& obj) {
+void add_surface(const AnimatedSurface& surface, const NormalSlots& slots, const PointsF& x,
+                 const std::vector<std::string>& materials, const std::set<std::string>& taken, ObjText& obj) {
   const Look& look = surface.look;
   obj.add_points("v", x.cast<double>());
-  const NormalSlots slots = normal_slots(look);
   if (!look.corner_uv.empty())
     for (const auto& uv : look.uv.rowwise()) obj.add("vt {} {}\n", uv[0], uv[1]);
   if (slots.count > 0) obj.add_points("vn", moved_normals(look, slots, x).cast<double>());
@@ -93,8 +91,14 @@ void add_surface(const AnimatedSurface& surface, const PointsF& x, const std::ve
 
 }  // namespace
 
-std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<const PointsF> x,
-                         const std::string& material_file) {
+std::vector<NormalSlots> normal_slots(std::span<const AnimatedSurface> surfaces) {
+  std::vector<NormalSlots> slots;
+  for (const AnimatedSurface& surface : surfaces) slots.push_back(normal_slots(surface.look));
+  return slots;
+}
+
+std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<const NormalSlots> slots,
+                         std::span<const PointsF> x, const std::string& material_file) {
   const ExportMaterials materials = export_materials(surfaces);
   ObjText obj;
   obj.no_material = unused_name(obj.no_material, materials.all);
@@ -108,7 +112,7 @@ std::string objects_text(std::span<const AnimatedSurface> surfaces, std::span<co
       obj.part.object = surface.look.empty() ? surface.name : named_part(surface, 0, taken).object;
       obj.add("o {}\n", obj.part.object);
     }
-    add_surface(surface, x[s], own, taken, obj);
+    add_surface(surface, slots[s], x[s], own, taken, obj);
     taken.insert(surface.name);
     for (const LookPart& part : surface.look.parts) taken.insert(part.object);
   }

@@ -69,13 +69,14 @@ std::vector<std::filesystem::path> export_point_caches(const AnimatedSurfaces& r
   for (std::size_t s = 0; s < run.surfaces.size(); ++s) {
     const AnimatedSurface& surface = run.surfaces[s];
     const std::string materials = objects_materials({&surface, 1});
+    const NormalSlots slots = normal_slots(surface.look);
     if (!materials.empty()) {
       written.push_back(request.file(surface.file + ".mtl"));
       write_file(written.back(), materials);
     }
     written.push_back(request.file(surface.file + ".obj"));
-    write_file(written.back(),
-               objects_text({&surface, 1}, {&first[s], 1}, materials.empty() ? "" : surface.file + ".mtl"));
+    write_file(written.back(), objects_text({&surface, 1}, {&slots, 1}, {&first[s], 1},
+                                            materials.empty() ? "" : surface.file + ".mtl"));
     if (!surface.moving) continue;
     written.push_back(request.file(surface.file + "." + request.format));
     write(written.back(), run, s);

@@ -6,6 +6,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
+#include "collision/geometry/require_file.hpp"
 #include "learned/network/nowhere_hdf5.hpp"
 #include "pipeline/host/bounds.hpp"
 
@@ -51,10 +52,17 @@ Handle file_access() {
   return access;
 }
 
+// Properties of what is created without its time, so that the same content gives the same bytes.
+Handle untimed(hid_t kind) {
+  Handle creation(H5Pcreate(kind), H5Pclose);
+  H5Pset_obj_track_times(creation.id(), false);
+  return creation;
+}
+
 // The system may cut a killed writer's last write between two memory pages. So metadata is kept within single pages,
 // where a write is complete or absent.
 Handle file_creation() {
-  Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  Handle creation = untimed(H5P_FILE_CREATE);
   H5Pset_file_space_strategy(creation.id(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
   H5Pset_file_space_page_size(creation.id(), 4096);
   return creation;
@@ -135,6 +143,7 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::open(const std::filesystem::path& path) {
+  require_file(path, "HDF5");
   silence();
   const Handle access = file_access();
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id());
@@ -179,14 +188,17 @@ void write_whole(const std::filesystem::path& path, const std::function<void(con
 }
 
 Handle File::make_group(const std::string& name) const {
-  return {check(H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make group " + name), H5Gclose};
+  const Handle creation = untimed(H5P_GROUP_CREATE);
+  return {check(H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), "make group " + name),
+          H5Gclose};
 }
 
 void File::write_constant(const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
                           const void* data) const {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const Handle creation = untimed(H5P_DATASET_CREATE);
   const Handle dataset(
-      check(H5Dcreate2(id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make " + name),
+      check(H5Dcreate2(id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), "make " + name),
       H5Dclose);
   if (std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end()) return;
   check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + name);
@@ -213,7 +225,7 @@ Handle File::make_growing(const std::string& name, hid_t type, const std::vector
   for (const hsize_t extent : row_shape) now.push_back(extent), most.push_back(extent), chunk.push_back(extent);
   const int rank = static_cast<int>(now.size());
   const Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Handle creation = untimed(H5P_DATASET_CREATE);
   check(H5Pset_chunk(creation.id(), rank, chunk.data()), "set the chunks of " + name);
   return {
       check(H5Dcreate2(id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), "make " + name),

@@ -4,6 +4,7 @@
 #include <zip.h>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/require_file.hpp"
 #include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
@@ -36,6 +37,7 @@ struct Npz::Archive {
 };
 
 Npz::Npz(const std::filesystem::path& path) : path_(path), archive_(std::make_unique<Archive>()) {
+  require_file(path, ".npz");
   std::error_code problem;
   archive_->file_size = std::filesystem::file_size(path, problem);
   if (problem) throw Error("cannot be opened (" + problem.message() + ")", path.string(), "check the path");

@@ -6,14 +6,14 @@
 #include <string_view>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/require_file.hpp"
 #include "pipeline/host/bounds.hpp"
 
 namespace selvedge {
 
 std::string read_file(const std::filesystem::path& path, const std::string& noun) {
+  require_file(path, noun);
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw Error("is a folder", path.string(), "name the " + noun + " file in it");
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   if (!ignored) refuse_too_many(static_cast<double>(size), most_file_bytes, "bytes", path.string(), "split the file");
   std::ifstream in(path, std::ios::binary);

@@ -5,8 +5,8 @@
 
 namespace selvedge {
 
-// The whole content of a file. `noun` is what it should be, in the errors: "mesh", "BVH". Throws Error where it is a
-// folder, is larger than bounds.hpp allows, or cannot be opened.
+// The whole content of a file. `noun` is what it should be, in the errors: "mesh", "BVH". Throws what
+// require_file does, and Error where it is larger than bounds.hpp allows or cannot be opened.
 std::string read_file(const std::filesystem::path&, const std::string& noun);
 
 // The same of a file that is text, at least at its begin: without the byte order mark of UTF-8 that some editors put

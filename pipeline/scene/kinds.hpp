@@ -28,6 +28,8 @@ struct StepperKind {
   // The maker of bare steppers (decorated_stepper.hpp) of a scene; `given` is the section as the file has it.
   std::function<MakeStepper(const Setup&, const Config& given)> maker = {};
   NetworkUse network = NetworkUse::none;
+  // It reads run.learned.weights though it runs no network.
+  bool coefficients = false;
   // Its steps without contact are the minimisers that the options of `solver` describe.
   bool minimises = false;
   // Throws Error for what the scene file says and the kind does not take; empty: it takes all.

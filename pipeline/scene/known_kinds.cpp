@@ -50,7 +50,7 @@ std::vector<PlanLine> carried_fitted_lines(const Setup& setup) {
 }
 
 StepperKind carried_fitted_kind() {
-  StepperKind kind{.name = carried_fitted_name, .plan = carried_fitted_lines};
+  StepperKind kind{.name = carried_fitted_name, .coefficients = true, .plan = carried_fitted_lines};
   kind.maker = [](const Setup& setup, const Config&) -> MakeStepper {
     return [model = taught_carried(setup).model](const Scene& scene) {
       return make_carried_stepper(scene, model, carried_fitted_name);

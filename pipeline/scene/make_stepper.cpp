@@ -21,9 +21,7 @@ std::filesystem::path weights_of(const Setup& setup, const std::string& cure) {
   return setup.file.parent_path() / weights;  // an absolute path stays as it is
 }
 
-bool reads_weights(const Setup& setup) {
-  return setup.kind.network != NetworkUse::none || setup.kind.name == carried_fitted_name;
-}
+bool reads_weights(const Setup& setup) { return setup.kind.network != NetworkUse::none || setup.kind.coefficients; }
 
 const WeightFile& network_of(const Setup& setup) {
   const std::filesystem::path file =

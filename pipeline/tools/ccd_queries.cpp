@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/require_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -112,9 +113,9 @@ PairKind kind_of(const std::filesystem::path& file) {
 
 std::vector<CcdQuery> read_ccd_queries(const std::filesystem::path& file) {
   const PairKind kind = kind_of(file);
+  require_file(file, "query");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Error("cannot be read", file.string(), "give files of queries, such as FOLDER/edge-edge/*.csv");
+  if (!stream) throw Error("cannot be read", file.string(), "give files of queries, such as FOLDER/edge-edge/*.csv");
   std::vector<CcdQuery> queries;
   std::vector<Row> rows;
   Place place{file};

@@ -88,4 +88,45 @@ TEST_CASE("pins of two cloths that are driven through each other meet, and those
   CHECK(two.crossing == 0);
 }
 
+TEST_CASE("two pins of one cloth that are brought to one place stay apart, and slide past each other",
+          "[pins_give_way]") {
+  const Sheet cloth = sheet(4, 0.1, 0);
+  const Surface surface = cloth.surface();
+  const ContactWorld world = make_contact_world(surface, {}, true, &cloth.x);
+  const ResolveOptions options;
+  const std::vector<int> corners{0, 4};
+  PairSearch search(world);
+  const auto moved_to = [&](const Vec3& first, const Vec3& second, const Points& x0, int& held) {
+    Points x1 = x0;
+    x1.row(0) = first.transpose();
+    x1.row(4) = second.transpose();
+    ResolveReport report;
+    held = pins_give_way(search, world, corners, options, x0, x1, report);
+    return x1;
+  };
+  const auto apart = [](const Points& x) { return (x.row(0) - x.row(4)).norm(); };
+  const Vec3 a = row(cloth.x, 0), b = row(cloth.x, 4), middle = 0.5 * (a + b);
+  int held = 0;
+  Points x = moved_to(middle, middle, cloth.x, held);
+  CHECK(held == 2);
+  CHECK(apart(x) == Approx(2 * options.separation));
+  x = moved_to(middle, middle, x, held);  // and again from there
+  CHECK(held == 2);
+  CHECK(apart(x) == Approx(2 * options.separation));
+  // One that rests stays; one that comes past slides round it.
+  x = moved_to(a, a + Vec3(-0.01, 0.001, 0), cloth.x, held);
+  CHECK(held == 1);
+  CHECK(row(x, 0) == a);
+  CHECK(apart(x) >= (1 - 1e-5) * 2 * options.separation);
+  // Those that come near, but not so near, are where they are wanted.
+  x = moved_to(middle - Vec3(0.0003, 0, 0), middle + Vec3(0.0003, 0, 0), cloth.x, held);
+  CHECK(held == 0);
+  // Pins that an edge joins are one piece, however short it becomes.
+  const std::vector<int> neighbours{0, 1};
+  Points x1 = cloth.x;
+  x1.row(1) = x1.row(0) + Eigen::RowVector3d(1e-4, 0, 0);
+  ResolveReport report;
+  CHECK(pins_give_way(search, world, neighbours, options, cloth.x, x1, report) == 0);
+}
+
 }  // namespace selvedge::test_pins_give_way

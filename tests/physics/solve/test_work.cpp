@@ -13,7 +13,7 @@ namespace {
 
 struct Books {
   double gain = 0;  // of energy [J]
-  Work work;
+  Work work, of_world;
 };
 
 // The conventional stepper's energy and the bound on its work over some frames.
@@ -28,6 +28,7 @@ Books books(const World& w, int frames, const std::function<Drive(int frame)>& d
     const Drive d = drive(f);
     REQUIRE(testing::frame(w.scene, *stepper, state, d, 1.0 / 60, to).status == StepStatus::accepted);
     result.work += bound(state, to, d);
+    result.of_world += bound.of_world(state, to, d);
     std::swap(state, to);
   }
   result.gain += energy(state);
@@ -96,6 +97,8 @@ TEST_CASE("work: what lifts a sheet by its pins is bounded, and not by much more
   CHECK(lift.gain < lift.work.total());
   CHECK(lift.work.total() == lift.work.pins);
   CHECK(lift.work.pins < 4 * weight);
+  CHECK(lift.gain < lift.of_world.total());
+  CHECK(lift.of_world.total() <= lift.work.total());
 }
 
 TEST_CASE("work: a plate that lifts a sheet does it, a plate at rest none", "[work]") {
@@ -114,6 +117,47 @@ TEST_CASE("work: a plate that lifts a sheet does it, a plate at rest none", "[wo
   CHECK(lift.gain > 0.2 * 9.81 * lumped_masses(w.scene).sum() * 0.5);
   CHECK(lift.gain < lift.work.total());
   CHECK(lift.work.obstacles > 0.9 * lift.work.total());
+  CHECK(lift.gain < lift.of_world.total());
+  CHECK(lift.of_world.total() <= lift.work.total());
+}
+
+TEST_CASE("work: a proposal's own stretch and speed are no work of the world", "[work]") {
+  constexpr double dt = 1.0 / 60;
+  World w = make_world(sheet(6, 0.4, 0));
+  w.scene.pins = {0, 1, 2, 3, 4, 5, 6};
+  const double weight = 9.81 * lumped_masses(w.scene).sum(), rise = 0.1 * dt;
+  State from = w.state, to = w.state;
+  from.v.col(1).setConstant(rise / dt);
+  to.time = from.time + dt;
+  to.x.col(1).array() += rise;
+  to.x.bottomRows(42).col(2).array() += 0.01;  // the cloth is drawn off its pins
+  to.v = (to.x - from.x) / dt;
+  WorkBound pinned(w.scene);
+  CHECK(pinned(from, to, w.drive).pins > 10 * weight * rise);
+  CHECK(pinned.of_world(from, to, w.drive).pins < 2 * weight * rise);
+
+  // Wind of 1 m/s does not throw cloth at 30 m/s.
+  World blown = make_world(sheet(6, 0.4, 0));
+  blown.scene.wind.on = true;
+  blown.drive.wind = {0, 1, 0};
+  State thrown = blown.state;
+  thrown.time = dt;
+  thrown.v.col(1).setConstant(30);
+  thrown.x += dt * thrown.v;
+  WorkBound air(blown.scene);
+  const double moving = 0.5 * lumped_masses(blown.scene).sum();  // at 1 m/s [J]
+  CHECK(air(blown.state, thrown, blown.drive).wind > 10 * moving);
+  CHECK(air.of_world(blown.state, thrown, blown.drive).wind < 2 * moving);
+
+  // Nor does a plate that rises at 1 m/s.
+  World pushed = make_world(sheet(6, 0.4, 0.0021));
+  add_obstacle(pushed, testing::sheet(2, 1, 0));
+  thrown.obstacles = pushed.state.obstacles;
+  thrown.obstacles[0].col(1).array() += dt;
+  thrown.x = pushed.state.x + dt * thrown.v;
+  WorkBound plate(pushed.scene);
+  CHECK(plate(pushed.state, thrown, pushed.drive).obstacles > 10 * moving);
+  CHECK(plate.of_world(pushed.state, thrown, pushed.drive).obstacles < 4 * moving);
 }
 
 TEST_CASE("work: velocity from nowhere is not covered", "[work]") {

@@ -172,6 +172,30 @@ TEST_CASE("conventional stepper: pins that cannot all be where they are wanted a
   CHECK(d.projected < 2 * options.resolve.budget.projected);
 }
 
+TEST_CASE("conventional stepper: pins of one cloth that are brought to one place stay apart, and the cloth goes on",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(10, 0.4, 1));
+  w.scene.pins = {0, 10};
+  const auto stepper = testing::conventional(w.scene);
+  const Points wide = w.state.x(w.scene.pins, Eigen::all);
+  const Eigen::RowVector3d middle = wide.colwise().mean();
+  State state = w.state, to;
+  int held = 0;
+  for (int f = 1; f <= 30; ++f) {
+    w.drive.pins = wide + std::min(1.0, f / 15.0) * (middle.replicate(2, 1) - wide);
+    const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
+    REQUIRE(report.status == StepStatus::accepted);
+    CHECK(report.collision.pairs_after + report.collision.passed_through == 0);
+    CHECK(report.collision.held_vertices <= 2 * report.substeps);  // the pins alone
+    held += report.collision.held_vertices;
+    std::swap(state, to);
+  }
+  CHECK(held > 0);
+  CHECK((state.x.row(0) - state.x.row(10)).norm() < 1e-3);
+  CHECK(state.x.col(1).minCoeff() < 1 - 0.3);  // it has fallen, and hangs
+  CHECK(state.v.rowwise().norm().maxCoeff() > 0);
+}
+
 TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {
   const World w = folding_world(10);
   const Run kept = run(w, 20), dropped = run(w, 20, 3);

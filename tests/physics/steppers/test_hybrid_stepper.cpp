@@ -338,6 +338,35 @@ TEST_CASE("hybrid: behind the response, motion, audits and energy alone decide",
   CHECK(energy);
 }
 
+TEST_CASE("hybrid: behind the response, stretch that a proposal makes at moving pins is no work of theirs",
+          "[hybrid]") {
+  World w = testing::swinging_sheet();
+  const double rise = 0.005;  // a frame [m]
+  w.state.v.col(1).setConstant(rise / dt);
+  const auto verdicts = [&](double drawn) {
+    const Propose stretch = [drawn](const State&, const Points& solved) {
+      Points x = solved;
+      x.bottomRows(x.rows() - 11).col(2).array() += drawn;  // the cloth is drawn off its pins
+      return x;
+    };
+    HybridOptions options;
+    options.mode = HybridMode::response;
+    const auto stepper = hybrid(w.scene, stretch, options);
+    State from = w.state, to;
+    std::vector<Verdict> all;
+    for (int frame = 1; frame <= 2; ++frame) {
+      Drive drive = w.drive;
+      drive.pins = w.state.x(w.scene.pins, Eigen::all);
+      drive.pins.col(1).array() += rise * frame;
+      all.push_back(testing::frame(w.scene, *stepper, from, drive, dt, to).verdict);
+      from = to;
+    }
+    return all.back();
+  };
+  CHECK(verdicts(0) == Verdict::admitted);
+  CHECK(verdicts(0.002) == Verdict::energy_gain);
+}
+
 TEST_CASE("hybrid: a rough step is made by the refiner from the proposal", "[hybrid]") {
   const World w = testing::swinging_sheet();
   HybridOptions options;

@@ -225,7 +225,7 @@ TEST_CASE("makehuman: files that are no JSON or not there are refused with the l
   fake::write(folder, "small.mhw", "{\"weights\": {\"root\": [[1, 1e999]]}}");
   refused("small.mhw: has a number that is too large");
   std::filesystem::remove(folder.path / "small.mhw");
-  refused("small.mhw: cannot be read");
+  refused("small.mhw: cannot be opened");
   fake::write(folder, "small.mhskel", "");
   refused("small.mhskel:1: is no JSON");
   rig.write(folder);

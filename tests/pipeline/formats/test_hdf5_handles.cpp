@@ -6,8 +6,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <thread>
+
 #include "collision/geometry/error.hpp"
-#include "tests/pipeline/fake_run.hpp"
+#include "learned/network/weights_hdf5.hpp"
+#include "tests/learned/learned_scenes.hpp"
+#include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_hdf5_handles {
 
@@ -53,6 +57,26 @@ TEST_CASE("a file that cannot be made is named as it was to be called", "[hdf5_h
   CHECK_THROWS_WITH(
       h5::write_whole(folder.path / "none" / "a.h5", [](const h5::File&) {}),
       Catch::Contains("none/a.h5: cannot write (No such file or directory)\n  cure: check that the folder"));
+}
+
+TEST_CASE("HDF5: the same content gives the same bytes, whenever it is written", "[hdf5_handles]") {
+  const fake::Folder folder("hdf5_times");
+  const fake::NarrowNetwork network = fake::narrow_network("contourcraft");
+  const auto write = [&](const std::string& name) {
+    h5::write_whole(folder.path / name, [](const h5::File& file) {
+      const std::vector<double> numbers{1, 2, 3};
+      file.make_group("group");
+      file.write_text("group/text", "anything");
+      file.write_constant("numbers", H5T_NATIVE_DOUBLE, {numbers.size()}, numbers.data());
+      file.make_growing("rows", H5T_NATIVE_DOUBLE, {3}, 2, 0);
+    });
+    write_weight_file(folder.path / ("weights_" + name), {network.architecture, network.weights, "", {}, ""});
+  };
+  write("a.h5");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 has times in whole seconds
+  write("b.h5");
+  for (const std::string before : {"", "weights_"})
+    CHECK(fake::whole(folder.path / (before + "a.h5")) == fake::whole(folder.path / (before + "b.h5")));
 }
 
 }  // namespace selvedge::test_hdf5_handles

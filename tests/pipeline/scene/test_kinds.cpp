@@ -111,6 +111,20 @@ TEST_CASE("kinds: without it the file is refused, and faults in its options are 
   CHECK_FALSE(kinds.find("other"));
 }
 
+TEST_CASE("kinds: the table says who reads weights, by no name", "[kinds]") {
+  const Folder folder("kinds_weights");
+  const Kinds known = known_kinds();
+  for (const StepperKind& kind : known.all()) {
+    INFO(kind.name);
+    CHECK(reads_weights(read(folder, "{stepper: " + kind.name + "}", known_kinds())) ==
+          (kind.name == "learned" || kind.name == "hybrid" || kind.name == "carried_fitted"));
+  }
+  Setup own = read(folder, "{stepper: counting}", with_counting());
+  CHECK_FALSE(reads_weights(own));
+  own.kind.coefficients = true;
+  CHECK(reads_weights(own));
+}
+
 TEST_CASE("kinds: one error names all that a scene lacks", "[kinds]") {
   const Folder folder("kinds_needs");
   const Setup setup =

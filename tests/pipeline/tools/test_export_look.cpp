@@ -111,7 +111,7 @@ TEST_CASE("OBJ: faces without a material do not get one that is named `default`"
   surface.look.materials = {{"default", Vec3(1, 0, 0)}};
   surface.look.face_material = {0, -1};
   const PointsF x = PointsF::Zero(3, 3);
-  const std::string text = objects_text({&surface, 1}, {&x, 1}, "sheet.mtl");
+  const std::string text = objects_text({&surface, 1}, normal_slots({&surface, 1}), {&x, 1}, "sheet.mtl");
   CHECK(fake::has(text, "usemtl default\nf 1 2 3\nusemtl default_1\nf 3 2 1\n"));
   CHECK(objects_materials({&surface, 1}) == "newmtl default\nKd 1 0 0\n");
 }
