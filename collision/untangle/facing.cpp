@@ -45,34 +45,78 @@ struct Bounds {
   }
 };
 
-// The bounds of eight groups, group i in lane i % 4 of half i / 4. A place that is left over has NaN.
-using Lanes = Bvh::Lanes;
+// The bounds of eight groups. A place that is left over has NaN.
 struct Block {
-  Lanes lo[9][2], hi[9][2];
+  alignas(32) float lo[9][in_a_block], hi[9][in_a_block];
 };
-[[gnu::always_inline]] inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 
-// One bit for each group of the block: 0 only if no vertex of the group is nearer than the square root of `square` to a
-// vertex in the bounds, faces it, and was farther away at rest.
-unsigned may_face(const Bounds& a, const Block& b, double square) {
-  const float most = static_cast<float>(square) * (1 + widened);
+template <class Lanes>
+[[gnu::always_inline]] inline void load(const float* from, Lanes& lanes) {
+  __builtin_memcpy(&lanes, from, sizeof lanes);
+}
+template <class Lanes>
+[[gnu::always_inline]] inline void keep_smaller(const Lanes& other, Lanes& lanes) {
+  lanes = other < lanes ? other : lanes;
+}
+template <class Lanes>
+[[gnu::always_inline]] inline void keep_larger(const Lanes& other, Lanes& lanes) {
+  lanes = other > lanes ? other : lanes;
+}
+
+// Sets the flags of the groups of the block from `first` on: false only if no vertex of the group is nearer than the
+// square root of `most` to a vertex in the bounds, faces it, and was farther away at rest. Vectors are arguments, since
+// clang cannot return wide ones between functions of different instruction sets.
+template <class Lanes, class Flags>
+[[gnu::always_inline]] inline void set_flags(const Bounds& a, const Block& b, int first, float most, Flags& flags) {
   constexpr float cosine = static_cast<float>(facing_cosine) + widened;
   constexpr float closer = static_cast<float>(come_closer * come_closer) * (1 + widened);
-  const auto half = [&](int h) {
-    Lanes gap{}, dot{}, at_rest{};
-    for (int x = 0, n = 3, r = 6; x < 3; ++x, ++n, ++r) {
-      const Lanes apart = larger(larger(a.lo[x] - b.hi[x][h], b.lo[x][h] - a.hi[x]), Lanes{});
-      gap += apart * apart;
-      dot += smaller(smaller(a.lo[n] * b.lo[n][h], a.lo[n] * b.hi[n][h]),
-                     smaller(a.hi[n] * b.lo[n][h], a.hi[n] * b.hi[n][h]));
-      const Lanes far = larger(a.hi[r] - b.lo[r][h], b.hi[r][h] - a.lo[r]);
-      at_rest += far * far;
-    }
-    return (gap <= most) & (dot <= cosine) & (gap <= closer * at_rest);
-  };
-  return bits_of(half(0), half(1));
+  Lanes gap{}, dot{}, at_rest{};
+  for (int x = 0, n = 3, r = 6; x < 3; ++x, ++n, ++r) {
+    Lanes lo, hi, lo_n, hi_n, lo_r, hi_r;
+    load(b.lo[x] + first, lo);
+    load(b.hi[x] + first, hi);
+    load(b.lo[n] + first, lo_n);
+    load(b.hi[n] + first, hi_n);
+    load(b.lo[r] + first, lo_r);
+    load(b.hi[r] + first, hi_r);
+    Lanes apart = a.lo[x] - hi;
+    keep_larger<Lanes>(lo - a.hi[x], apart);
+    keep_larger<Lanes>(Lanes{}, apart);
+    gap += apart * apart;
+    Lanes least = a.lo[n] * lo_n;
+    keep_smaller<Lanes>(a.lo[n] * hi_n, least);
+    keep_smaller<Lanes>(a.hi[n] * lo_n, least);
+    keep_smaller<Lanes>(a.hi[n] * hi_n, least);
+    dot += least;
+    Lanes far = a.hi[r] - lo_r;
+    keep_larger<Lanes>(hi_r - a.lo[r], far);
+    at_rest += far * far;
+  }
+  flags = (gap <= most) & (dot <= cosine) & (gap <= closer * at_rest);
 }
+
+// One bit for each group of the block.
+unsigned may_face_plain(const Bounds& a, const Block& b, float most) {
+  LaneFlags low, high;
+  set_flags<Bvh::Lanes>(a, b, 0, most, low);
+  set_flags<Bvh::Lanes>(a, b, 4, most, high);
+  return bits_of(low, high);
+}
+
+using MayFace = unsigned (*)(const Bounds&, const Block&, float);
+
+#if defined(__x86_64__)
+using WideLanes [[gnu::vector_size(32)]] = float;
+using WideFlags [[gnu::vector_size(32)]] = int;
+[[gnu::target("avx2")]] unsigned may_face_avx2(const Bounds& a, const Block& b, float most) {
+  WideFlags flags;
+  set_flags<WideLanes>(a, b, 0, most, flags);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<WideLanes>(flags)));
+}
+MayFace may_face_here() { return __builtin_cpu_supports("avx2") ? may_face_avx2 : may_face_plain; }
+#else
+MayFace may_face_here() { return may_face_plain; }
+#endif
 
 // Groups of a block, one bit each.
 struct Near {
@@ -84,6 +128,7 @@ struct Near {
 struct PosedCubes {
   const FacingBody& body;
   const Points &x, &normals;
+  MayFace may_face = may_face_here();  // with AVX2 where the processor has it; the result is the same
   CellGrid grid;
   Points x_near, normals_near, rest_near;
   std::vector<int> filled;        // cubes that hold vertices
@@ -136,8 +181,8 @@ struct PosedCubes {
       for (int i = 0; i < 9; ++i) {
         constexpr float none = std::numeric_limits<float>::quiet_NaN();
         Block& block = blocks[g / in_a_block];
-        block.lo[i][g % in_a_block / 4][g % 4] = g < count ? in_group[g].lo[i] : none;
-        block.hi[i][g % in_a_block / 4][g % 4] = g < count ? in_group[g].hi[i] : none;
+        block.lo[i][g % in_a_block] = g < count ? in_group[g].lo[i] : none;
+        block.hi[i][g % in_a_block] = g < count ? in_group[g].hi[i] : none;
       }
   }
 
@@ -165,7 +210,7 @@ struct PosedCubes {
   // that have moved.
   unsigned facing_of(const Bounds& bounds, bool all, Near near, double square) const {
     const unsigned groups = all ? near.groups : near.groups & moved[near.block];
-    return groups != 0 ? groups & may_face(bounds, blocks[near.block], square) : 0;
+    return groups != 0 ? groups & may_face(bounds, blocks[near.block], static_cast<float>(square) * (1 + widened)) : 0;
   }
   void keep_facing(const Bounds& bounds, bool all, Near from, std::vector<Near>& kept) const {
     from.groups = facing_of(bounds, all, from, body.reach * body.reach);

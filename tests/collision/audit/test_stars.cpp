@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <numbers>
 #include <random>
 
@@ -83,6 +84,19 @@ TEST_CASE("stars: one that is flat at both ends but not between is not clean", "
   half_turned.leftCols(2) *= -1;
   CHECK(Fan(fan).is_clean(fan.x.rowwise() + Eigen::RowVector3d(0.3, 0.1, 0)));
   CHECK_FALSE(fan.is_clean(half_turned));
+
+  // The first node, which goes outward, overtakes the second one, which comes in. The others go ahead.
+  Fan open(3, false, turn / 4);
+  Points to = open.x;
+  for (int i = 1; i <= 4; ++i) {
+    const double degree = turn / 360, from_angle = std::array{0, 45, 75, 105}[i - 1] * degree;
+    open.x.row(i) << std::cos(from_angle), std::sin(from_angle), 0;
+    to.row(i) << std::cos(from_angle + 90 * degree), std::sin(from_angle + 90 * degree), 0;
+    (i == 1 ? to : open.x).row(i) *= 10;
+  }
+  CHECK(open.is_clean());
+  CHECK(clean_stars({&open.surface, &to, &to}, 0)[0] == 1);
+  CHECK_FALSE(open.is_clean(to));
 }
 
 TEST_CASE("stars: rounding of the end is allowed for", "[stars]") {

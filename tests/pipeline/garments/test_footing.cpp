@@ -1,5 +1,8 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <random>
+
 #include "pipeline/garments/footing.hpp"
 
 namespace selvedge::test_footing {
@@ -42,6 +45,29 @@ Points layers(std::initializer_list<double> heights) {
   return x;
 }
 
+// squeezed with all vertices of the body looked at, in double.
+Points squeezed_by_all(const Footing& footing, const PosedSkin& body, const Points& x) {
+  Points to = x;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const Vec3 foot = row(body.x, footing.foot[v]), way = row(x, static_cast<int>(v)) - foot;
+    const double out = way.norm(), part = footing.part[v];
+    if (!(out > 0 && out < 0.06)) continue;
+    double gap = std::numeric_limits<double>::infinity();
+    for (int p = 0; p < body.x.rows(); ++p) {
+      const Vec3 offset = row(body.x_in_order, p) - foot;
+      const double height = offset.dot(way) / out, beside = (offset - height / out * way).norm();
+      const double there = height + std::max(0.0, beside - 0.01);
+      if (height > 0 && row(body.normals_in_order, p).dot(way) / out <= -0.3 && there < out / 0.25)
+        gap = std::min(gap, there);
+    }
+    if (!(out > part * gap)) continue;
+    const double left = (0.5 - part) * gap, beyond = out - part * gap;
+    const double less = left > 0 ? part * gap + left * beyond / (beyond + left) : part * gap;
+    to.row(v) += std::clamp((0.06 - out) / 0.03, 0.0, 1.0) * (less / out - 1) * way.transpose();
+  }
+  return to;
+}
+
 }  // namespace
 
 TEST_CASE("footing: what comes near squeezes layers into its half of the gap, in their order", "[footing]") {
@@ -80,6 +106,31 @@ TEST_CASE("footing: what lies on the body stays on it", "[footing]") {
   const Plates body;
   const Points x = layers({0});
   CHECK(squeezed(footing_of(x, body.skin(1)), body.skin(0.001), x) == x);
+}
+
+TEST_CASE("footing: no part that comes near is missed, also far from the origin", "[footing]") {
+  const Plates body;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int moved = 0, still = 0;
+  for (const double far : {0.0, 3.0, 300.0}) {
+    Points x(200, 3);
+    for (int v = 0; v < x.rows(); ++v)
+      x.row(v) << 0.18 * unit(random), 0.025 + 0.025 * unit(random), 0.18 * unit(random);
+    Footing footing = footing_of(x, body.skin(1));
+    for (int pose = 0; pose < 10; ++pose) {
+      Points at = body.at(0.05 + 0.04 * unit(random), 0.2 * unit(random));
+      for (double& c : at.reshaped()) c += 0.008 * unit(random);
+      at.array() += far;
+      const Points worn = x.array() + far;
+      const PosedSkin skin(body.surface, at);
+      const Points to = squeezed(footing, skin, worn);
+      CHECK((to - squeezed_by_all(footing, skin, worn)).cwiseAbs().maxCoeff() < 1e-9);
+      for (int v = 0; v < x.rows(); ++v) ++(to.row(v) != worn.row(v) ? moved : still);
+    }
+  }
+  CHECK(moved > 500);
+  CHECK(still > 500);
 }
 
 }  // namespace selvedge::test_footing
