@@ -138,7 +138,7 @@ MeshFrame frame_of(const DressRequest& request, const Mesh& mesh, const Points& 
                 request.mesh.string(),
                 fmt::format("say which: {} or {}", frame_options(fits[0].frame), frame_options(fits[1].frame)));
   reason = fmt::format("guessed: so it lies on the body, {}; {} says the same",
-                       fits.size() == 1 ? "and in no other unit or with the other axis up"
+                       fits.size() == 1 ? "and in any other way it does not, or crosses it"
                                         : "and nearer than in " + frame_text(fits[1].frame),
                        frame_options(*clear));
   return *clear;
