@@ -31,8 +31,8 @@ Key weld_key() {
   return flag(
       "weld", false,
       "Joins pieces of a mesh where their borders meet along an edge, vertex by vertex. Vertices that remain are "
-      "renumbered in their order. Where more than two triangles would meet in an edge, or pieces meet in a "
-      "point, vertices stay apart, with a warning.");
+      "renumbered in their order for results; what a scene lists by `vertices` keeps the numbers of the file. Where "
+      "more than two triangles would meet in an edge, or pieces meet in a point, vertices stay apart, with a warning.");
 }
 
 Key weld_within_key() {

@@ -42,9 +42,9 @@ std::string cure_for(const std::string& reason) {
 
 // Latest format (SWMR needs it), no file locks (network folders often lack them; this program allows one writer per
 // file).
-Handle file_access() {
+Handle file_access(H5F_libver_t earliest = H5F_LIBVER_LATEST) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  H5Pset_libver_bounds(access.id(), earliest, H5F_LIBVER_LATEST);
   H5Pset_file_locking(access.id(), false, true);
   // SWMR readers read metadata again while its checksum is wrong, and wait twice as long each time. The default of 100
   // times would never end with a file of a killed writer; this many take a second or two.
@@ -134,9 +134,10 @@ Handle text_type(std::size_t length) {
   return type;
 }
 
-File File::create(const std::filesystem::path& path) {
+File File::create(const std::filesystem::path& path, bool followed) {
   silence();
-  const Handle access = file_access(), creation = file_creation();
+  // In the latest format the root group has its time, whatever its properties say (HDF5 1.10).
+  const Handle access = file_access(followed ? H5F_LIBVER_LATEST : H5F_LIBVER_EARLIEST), creation = file_creation();
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id(), access.id());
   if (id < 0) throw Error("cannot write (" + reason_of_failure() + ")", path_in_place(path).string(), write_cure);
   return {path, Handle(id, H5Fclose)};
@@ -174,7 +175,7 @@ void File::abandon() {
 
 void write_whole(const std::filesystem::path& path, const std::function<void(const File&)>& fields) {
   const std::filesystem::path beside = path_beside(path);
-  File file = File::create(beside);
+  File file = File::create(beside, false);
   try {
     fields(file);
     file.close();

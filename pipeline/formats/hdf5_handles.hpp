@@ -44,7 +44,8 @@ Handle text_type(std::size_t length);  // fixed length, padded with zeros; `leng
 // A file and the calls on it that may fail, each turned into an Error that names the file.
 class File {
  public:
-  static File create(const std::filesystem::path&);  // must not exist yet: take a path_beside, then rename it
+  // A file that must not exist yet: take a path_beside, then rename it. `followed`: others read it while it is written.
+  static File create(const std::filesystem::path&, bool followed = true);
   static File open(const std::filesystem::path&);    // SWMR read: also opens files of killed writers
 
   hid_t id() const { return handle_.id(); }

@@ -27,11 +27,13 @@ struct FrameFit {
   double off = 0;
 };
 
-// Those that fit, the best first, of the units m, dm, cm, mm, in and both axes, or of what is given alone. `body` is in
-// metres, with y up, in the pose in which it wears the garment; its triangles face outwards. Distances are those of the
-// nearest vertices, of a sample of the garment's.
-std::vector<FrameFit> fitting_frames(const Points& x, const Points& body, const Triangles& body_triangles,
-                                     const std::optional<std::string>& unit = {}, const std::optional<Up>& up = {});
+// Those that fit, the best first, of the units m, dm, cm, mm, in and both axes, or of what is given alone. Of two axes
+// with one unit, that one is left out with which the garment crosses the body many times as often: a wide skirt is
+// about as near to it either way. `body` is in metres, with y up, in the pose in which it wears the garment; its
+// triangles face outwards. Distances are those of the nearest vertices, of a sample of the garment's.
+std::vector<FrameFit> fitting_frames(const Points& x, const Triangles&, const Points& body,
+                                     const Triangles& body_triangles, const std::optional<std::string>& unit = {},
+                                     const std::optional<Up>& up = {});
 
 // The first of them where the next one is more than half as far off again. Absent: none fits, or it is not clear which.
 std::optional<MeshFrame> clear_frame(const std::vector<FrameFit>&);

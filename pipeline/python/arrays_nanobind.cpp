@@ -27,6 +27,8 @@ nb::object as_array(const nb::handle& array, const char* type, const char* kinds
   } catch (const nb::python_error&) {
     throw Error("is no array", where, std::string("give an array of ") + shape);
   }
+  if (nb::hasattr(array, "mask") && PyObject_IsTrue(nb::object(numpy.attr("any")(array.attr("mask"))).ptr()) == 1)
+    throw Error("has masked values", where, "give an array without a mask");
   const std::string kind = nb::cast<std::string>(given.attr("dtype").attr("kind"));
   const bool empty = nb::cast<std::size_t>(given.attr("size")) == 0;  // which numpy takes for float64
   if (!empty && std::string(kinds).find(kind) == std::string::npos)

@@ -13,6 +13,7 @@
 #include "pipeline/python/fields_nanobind.hpp"
 #include "pipeline/python/python_stop_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
+#include "pipeline/python/unlocked_nanobind.hpp"
 #include "pipeline/run/running_mark.hpp"
 #include "pipeline/tools/export.hpp"
 #include "pipeline/tools/fit_report.hpp"
@@ -39,8 +40,9 @@ nb::object fit_of(const Path& run, const std::optional<Path>& scene, const std::
                   const std::optional<Path>& out) {
   if (frame && *frame < 0) throw Error("is " + std::to_string(*frame), "fit, frame", "give 0 or more");
   if (reach && !(*reach > 0)) throw Error("is " + std::to_string(*reach), "fit, reach", "give a length above 0 [m]");
-  const FitReport report = fit(
-      {run, scene.value_or(""), body, regions.value_or(""), frame.value_or(-1), reach.value_or(0), out.value_or("")});
+  const FitRequest request{
+      run, scene.value_or(""), body, regions.value_or(""), frame.value_or(-1), reach.value_or(0), out.value_or("")};
+  const FitReport report = unlocked([&] { return fit(request); });
   nb::object result = object_of_json(fit_json(report));
   result["gap"] = copy_of(report.measures.gap);
   result["strain"] = copy_of(report.measures.strain);
@@ -56,10 +58,7 @@ auto followed_by(Request request, const nb::object& log, const Work& work) {
   PythonLog lines(log, stop);
   request.log = &lines;
   request.stop = [&] { return stop.asked(); };
-  const auto made = [&] {
-    const nb::gil_scoped_release unlocked;
-    return work(request);
-  }();
+  const auto made = unlocked([&] { return work(request); });
   stop.raise_kept();
   return made;
 }
@@ -103,10 +102,11 @@ std::vector<Path> export_run(const Path& run, const std::string& format, const P
                              const nb::object& progress) {
   ExportRequest request{run, format, out, obstacles};
   request.progress = [&](int done, int all) {
+    const nb::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (!progress.is_none()) progress(done, all);
   };
-  return export_trajectory(request);
+  return unlocked([&] { return export_trajectory(request); });
 }
 
 nb::object page_of(const std::vector<Path>& runs, std::size_t limit) {

@@ -11,6 +11,7 @@
 #include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/joint_regressor.hpp"
 #include "pipeline/config/config_text.hpp"
+#include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/scene_nanobind.hpp"
@@ -109,6 +110,15 @@ Clip clip_of_arrays(const BodyModel& body, const nb::object& poses, const nb::ob
   return clip;
 }
 
+// Triangles that have a vertex twice are an error of their own, later.
+void warn_of_faults(const std::string& where, const Points& x, const Triangles& triangles) {
+  const auto a = triangles.col(0), b = triangles.col(1), c = triangles.col(2);
+  if ((a.array() == b.array() || b.array() == c.array() || c.array() == a.array()).any()) return;
+  std::vector<std::string> warnings;
+  for (const std::string& fault : mesh_faults(x, triangles)) warnings.push_back(where + ": " + fault);
+  warn(warnings);
+}
+
 }  // namespace
 
 // Appends the cloth to the scene, with its pins.
@@ -134,6 +144,8 @@ int SceneObject::add_cloth_arrays(const nb::handle& x, const nb::handle& triangl
   part.rest = part.first = part.mesh.x = points_of(x, where + ", x");
   part.velocity = Points::Zero(part.rest.rows(), 3);
   part.mesh.triangles = triangles_of(triangles, part.rest.rows(), where + ", triangles");
+  if (part.mesh.triangles.rows() == 0) throw Error("has no rows", where + ", triangles", "give three vertices a row");
+  warn_of_faults(where, part.rest, part.mesh.triangles);
   if (!material.is_none()) {
     if (density || youngs_modulus || poisson || bending)
       throw Error("is given beside numbers of it", where + ", material", "put the numbers into `material`");

@@ -11,6 +11,7 @@
 #include "pipeline/formats/read_point_cache.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
+#include "pipeline/python/unlocked_nanobind.hpp"
 #include "pipeline/tools/animated_run.hpp"
 
 namespace selvedge {
@@ -58,7 +59,7 @@ nb::dict check_arrays(const nb::handle& x, const nb::handle& triangles, const nb
   const Meshes meshes = meshes_of(x, triangles, bodies);
   std::vector<AuditBody> obstacles;
   for (std::size_t k = 1; k < meshes.points.size(); ++k) obstacles.push_back({&meshes.surfaces[k], &meshes.points[k]});
-  const Audit found = audit(meshes.surfaces[0], meshes.points[0], obstacles);
+  const Audit found = unlocked([&] { return audit(meshes.surfaces[0], meshes.points[0], obstacles); });
   nb::dict result;
   result["self_pairs"] = found.self_pairs.size();
   result["vertex_pairs"] = found.vertex_pairs.size();
@@ -73,7 +74,8 @@ nb::tuple untangle_arrays(const nb::handle& x, const nb::handle& triangles, cons
   if (iterations < 0) throw Error("is " + std::to_string(iterations), "untangle, iterations", "give 0 or more");
   UntangleOptions options;
   options.iterations = iterations;
-  const UntangleResult result = untangle(meshes.surfaces[0], meshes.points[0], std::span(sheets).subspan(1), options);
+  const UntangleResult result =
+      unlocked([&] { return untangle(meshes.surfaces[0], meshes.points[0], std::span(sheets).subspan(1), options); });
   nb::dict report;
   report["pairs_before"] = result.pairs_before;
   report["pairs_after"] = result.pairs_after;
@@ -96,9 +98,9 @@ Points contour_points(const std::vector<SheetView>& sheets, const Segments& foun
 nb::list contours_of_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
   const Meshes meshes = meshes_of(x, triangles, bodies);
   const std::vector<SheetView> sheets = sheets_of(meshes);
-  const Segments found = find_segments(sheets);
+  const Segments found = unlocked([&] { return find_segments(sheets); });
   nb::list all;
-  for (const Contour& contour : find_contours(sheets, found)) {
+  for (const Contour& contour : unlocked([&] { return find_contours(sheets, found); })) {
     nb::dict one;
     one["points"] = copy_of(contour_points(sheets, found, contour));
     one["closed"] = contour.closed;
@@ -121,9 +123,11 @@ nb::dict distance_of_arrays(const nb::handle& points, const nb::handle& x, const
   const Points at = points_of(points, "points");
   Meshes meshes;
   add_mesh(x, triangles, "", "the surface", meshes);
-  DistanceField field(meshes.surfaces[0]);
-  field.move_to(meshes.points[0]);
-  const std::vector<SignedDistance> found = field.ask(at);
+  const std::vector<SignedDistance> found = unlocked([&] {
+    DistanceField field(meshes.surfaces[0]);
+    field.move_to(meshes.points[0]);
+    return field.ask(at);
+  });
   Eigen::VectorXd value(at.rows());
   Points gradient(at.rows(), 3), closest(at.rows(), 3);
   std::vector<int> triangle;
@@ -146,10 +150,10 @@ nb::list read_surfaces(const std::filesystem::path& run, bool obstacles) {
   ExportRequest request;
   request.trajectory = trajectory_file(run);
   request.obstacles = obstacles;
-  const AnimatedSurfaces made = animated_run(request).surfaces;
+  const AnimatedSurfaces made = unlocked([&] { return animated_run(request); }).surfaces;
   std::vector<nb::list> x(made.surfaces.size());
   for (int i = 0; i < made.frame_count; ++i) {
-    const std::vector<PointsF> all = made.frame(i);
+    const std::vector<PointsF> all = unlocked([&] { return made.frame(i); });
     for (std::size_t s = 0; s < x.size(); ++s)
       if (i == 0 || made.surfaces[s].moving) x[s].append(copy_of(Points(all[s].cast<double>())));
   }
@@ -179,7 +183,7 @@ nb::list read_surfaces(const std::filesystem::path& run, bool obstacles) {
 }
 
 nb::dict read_cache(const std::filesystem::path& file) {
-  const PointCache cache = read_point_cache(file);
+  const PointCache cache = unlocked([&] { return read_point_cache(file); });
   nb::list x;
   for (const Points& frame : cache.frames) x.append(copy_of(frame));
   nb::dict result;

@@ -17,6 +17,7 @@ struct PinPart {
   std::string name;                       // what the scene says of them: "of group top"
   std::vector<int> vertices;              // of the cloth, ascending
   std::function<Points(double time)> at;  // where they are, a row a vertex
+  bool keyed = false;                     // moved by keyframes of their own, from time 0
 };
 
 // One cloth of a scene file, numbered by itself.
@@ -32,7 +33,7 @@ struct ClothPart {
   std::vector<PinPart> pins;
   std::vector<Follower> followers;
   std::shared_ptr<const Wearing> worn;  // null for what is no garment
-  std::vector<int> sewn;                // of each vertex as read or made: its number here; empty where nothing is sewn
+  std::vector<int> sewn;  // of each vertex as read or made: its number here; empty where nothing is welded or sewn
   double sewn_apart = 0;                // how far vertices that are one now were apart [m]
   std::optional<Draping> draping;
   bool cut = false;  // what of it is tangled is cut out at the start

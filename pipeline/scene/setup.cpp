@@ -270,6 +270,7 @@ JoinedScene join_scene(const Config& config, const SceneParts& parts, double beg
   }
   world->gravity = config["gravity"].vector();
   read_wind(config["wind"], scene.wind, *world);
+  warn_of_storm(world->wind, joined.warnings);
   warn_of_thickness(scene, joined.warnings);
   joined.start = drive(*world, begin_time);
   for (std::size_t k = 0; k < joined.start.obstacles.size(); ++k)
@@ -348,6 +349,7 @@ Setup read_setup(const std::filesystem::path& file, const std::vector<std::strin
   setup.drive_at = std::move(joined.drive_at);
   setup.followers = std::move(joined.followers);
   setup.warnings = std::move(joined.warnings);
+  warn_of_fast_pins(parts.cloths, setup.run.fps, setup.run.frames, setup.warnings);
   for (const ObstaclePart& part : parts.obstacles)
     if (part.ends)
       warn_of_end("the motion of obstacle `" + part.obstacle.name + "`", *part.ends, setup.run.fps, setup.run.frames,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/counted.hpp"
+#include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
@@ -82,11 +83,14 @@ PinPart read_pin(const Config& section, const ClothPart& part) {
   }
   const Points start = part.mesh.x(vertices, Eigen::all);
   const Motion motion = read_motion(section["motion"], start);
-  if (!part.worn) return {name, vertices, [start, motion](double time) { return moved(motion, start, time); }};
+  const bool keyed = section["motion"].given;
+  if (!part.worn) return {name, vertices, [start, motion](double time) { return moved(motion, start, time); }, keyed};
   // A garment that is draped goes with the body until its pins begin to move.
-  return {name, vertices, [start, motion, before = following(part.worn, vertices, name).at](double time) {
+  return {name, vertices,
+          [start, motion, before = following(part.worn, vertices, name).at](double time) {
             return time < 0 ? before(time) : moved(motion, start, time);
-          }};
+          },
+          keyed};
 }
 
 // Pieces that touch in single vertices, or lie edge to edge, fall apart, and their contact takes long.
@@ -110,11 +114,18 @@ void warn_of_seams(const Config& garment, const ClothPart& part, std::vector<std
                      unwelded_text(joined, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
 }
 
+void warn_of_faults(const ClothPart& part, std::vector<std::string>& warnings) {
+  for (const std::string& fault : mesh_faults(part.mesh.x, part.mesh.triangles))
+    warnings.push_back("cloth `" + part.name + "`: " + fault);
+}
+
 // A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
 void read_shape(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings,
                 ClothPart& part) {
   const bool worn = part.worn != nullptr;
   part.mesh = worn ? rest_mesh(*part.worn) : read_sheet(section, folder);
+  const bool of_file = section["mesh"].given || (worn && section["garment"]["file"].given);
+  part.sewn = worn && of_file && section["garment"]["weld"].flag() ? part.mesh.look.vertex : part.mesh.welded;
   warnings.insert(warnings.end(), part.mesh.warnings.begin(), part.mesh.warnings.end());
   const Config& placement = worn ? part.worn->by->section : section;
   read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
@@ -124,6 +135,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
     warn_of_extent(section["mesh"], "cloth `" + part.name + "`", largest_cloth, part.mesh.x, warnings);
   if (!worn) sew(section["seams"], folder, part, warnings);
   if (section["mesh"].given) warn_of_coincident(part, warnings);
+  if (of_file) warn_of_faults(part, warnings);
   if (worn && section["garment"]["file"].given) warn_of_seams(section["garment"], part, warnings);
   leave_out_massless(part, warnings);
   if (part.mesh.triangles.rows() == 0)

@@ -97,18 +97,18 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
 bool is_mesh(const std::filesystem::path& name) { return name.extension() == ".obj" || name.extension() == ".ply"; }
 
 // What to do with a mesh that is not on the body as its section says.
-std::string frame_cure(const Points& x, const Points& body, const Triangles& triangles) {
+std::string frame_cure(const Mesh& mesh, const Points& body, const Triangles& body_triangles) {
   const std::string otherwise = "make the garment with `selvedge dress`, which takes poses";
-  const std::optional<MeshFrame> frame = clear_frame(fitting_frames(x, body, triangles));
+  const std::optional<MeshFrame> frame = clear_frame(fitting_frames(mesh.x, mesh.triangles, body, body_triangles));
   if (!frame) return "give its `unit` and the axis that points `up`, or " + otherwise;
   return fmt::format("write `unit: {}, up: {}`, with which it lies on the body, or {}", frame->unit,
                      frame->up == Up::y ? "y" : "z", otherwise);
 }
 
-// A mesh that lies where the body wears it in its zero pose and the shape that its section gives. `as_read`: its
-// positions before unit and axis were applied.
+// A mesh that lies where the body wears it in its zero pose and the shape that its section gives. `as_read`: the
+// mesh before unit and axis were applied.
 Garment dressed_as_worn(const Config& section, const std::string& name, const Mesh& mesh, const Performance& who,
-                        const Points& as_read) {
+                        const Mesh& as_read) {
   const Points body = shaped(who.body.skin, who.given_shape);
   if (worn_part(mesh.x, body).places.empty())
     section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
@@ -123,7 +123,7 @@ Garment read_dressed(const Config& section, const std::filesystem::path& file, c
                      std::vector<std::string>& warnings) {
   Mesh mesh = read_mesh(file);
   read_materials(mesh, MissingMtl::ignore);
-  const Points as_read = mesh.x;
+  const Mesh as_read = mesh;
   mesh.x = read_unit(section["unit"]) * with_y_up(mesh.x, section["up"].text() == "z" ? Up::z : Up::y);
   refuse_far(section["file"], "mesh " + file.string(), mesh.x);
   read_weld(section, file.string(), mesh);
@@ -211,7 +211,7 @@ std::shared_ptr<const Wearing> wear_mesh(const Config& cloth, const std::string&
   const Config& section = cloth["garment"];
   check_placed_by_body(cloth);
   const auto who = wearer(section, bodies);
-  Garment garment = dressed_as_worn(section, name, mesh, *who, mesh.x);
+  Garment garment = dressed_as_worn(section, name, mesh, *who, mesh);
   if (pins) garment.pins = *pins;
   if (!section["pins"].flag()) garment.pins.clear();
   return worn_by(who, std::move(garment));

@@ -1,7 +1,6 @@
 #include "pipeline/scene/setup_seams.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "collision/geometry/error.hpp"
 #include "physics/energies/measures.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/host/read_file.hpp"
 #include "pipeline/obstacles/setup_pairs.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/setup_selection.hpp"
@@ -21,13 +21,13 @@ namespace {
 constexpr double no_distance = 1e-6;  // of sewn vertices, in mean edge lengths
 
 struct SewnPair {
-  std::array<int, 2> vertices;  // of the cloth as read or made
+  std::array<int, 2> vertices;  // of the cloth before it is sewn
   const Config* by = nullptr;
 };
 
 struct Weld {
   std::vector<SewnPair> pairs;
-  std::vector<int> vertex;   // of each vertex as read or made: its number once all are sewn
+  std::vector<int> vertex;   // of each vertex before: its number once all are sewn
   std::vector<int> members;  // of each sewn vertex: how many it was
 
   // Throws at the pair that made vertex v.
@@ -39,8 +39,8 @@ struct Weld {
 
 const std::string edge_by_edge = "sew panels edge by edge, or join them by `springs`";
 
-std::vector<std::array<int, 2>> read_pair_file(const std::filesystem::path& path, Eigen::Index count) {
-  std::ifstream in(path);
+std::vector<std::array<int, 2>> read_pair_file(const std::filesystem::path& path, const ClothPart& part) {
+  std::istringstream in(read_text_file(path, "seam"));
   std::vector<std::array<int, 2>> pairs;
   std::string text;
   for (int line = 1; std::getline(in, text); ++line) {
@@ -52,11 +52,12 @@ std::vector<std::array<int, 2>> read_pair_file(const std::filesystem::path& path
     if (!(words >> pair[0] >> pair[1]) || words >> rest)
       throw Error("`" + text + "` is not a pair of vertices", where, "write two indices a line, from 0");
     for (const int v : pair)
-      if (v < 0 || v >= count)
+      if (v < 0 || v >= vertices_as_read(part))
         throw Error(fmt::format("names vertex {}, which does not exist", v), where,
-                    fmt::format("allowed: 0 to {}", count - 1));
+                    fmt::format("allowed: 0 to {}", vertices_as_read(part) - 1));
     if (pair[0] == pair[1]) throw Error("pairs a vertex with itself", where, "write two different indices a line");
-    pairs.push_back(pair);
+    for (int& v : pair) v = number_here(part, v);
+    if (pair[0] != pair[1]) pairs.push_back(pair);  // others are welded already
   }
   return pairs;
 }
@@ -67,7 +68,7 @@ std::vector<SewnPair> read_seams(const Config& list, const std::filesystem::path
     const Config &from = seam["from"], &to = seam["to"];
     if (from.given != to.given) seam.fail("needs `from` and `to`, or `file`", "name both sides, or the file of pairs");
     const auto pairs = from.given ? read_pairs(seam, read_vertices(from, part), read_vertices(to, part), part.mesh.x)
-                                  : read_pair_file(existing_path(seam["file"], folder), part.mesh.x.rows());
+                                  : read_pair_file(existing_path(seam["file"], folder), part);
     for (const auto& pair : pairs) sewn.push_back({pair, &seam});
   }
   return sewn;
@@ -170,7 +171,10 @@ void sew(const Config& list, const std::filesystem::path& folder, ClothPart& par
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   }
-  part.sewn = welded.vertex;
+  if (part.sewn.empty())
+    part.sewn = welded.vertex;  // not welded before
+  else
+    for (int& v : part.sewn) v = welded.vertex[v];
 }
 
 void warn_of_stretched_seams(const std::vector<ClothPart>& parts, const Scene& scene, const Points& x,

@@ -45,17 +45,23 @@ std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
 }
 
 std::vector<int> listed(const Config& list, const ClothPart& part) {
-  const std::size_t count = part.sewn.empty() ? static_cast<std::size_t>(part.mesh.x.rows()) : part.sewn.size();
+  const Eigen::Index count = vertices_as_read(part);
   std::vector<int> found;
   for (const double v : list.numbers) {
     if (v >= static_cast<double>(count))
       list.fail(fmt::format("names vertex {}, which does not exist", v), fmt::format("allowed: 0 to {}", count - 1));
-    found.push_back(part.sewn.empty() ? static_cast<int>(v) : part.sewn[static_cast<std::size_t>(v)]);
+    found.push_back(number_here(part, static_cast<int>(v)));
   }
   return found;
 }
 
 }  // namespace
+
+Eigen::Index vertices_as_read(const ClothPart& part) {
+  return part.sewn.empty() ? part.mesh.x.rows() : std::ssize(part.sewn);
+}
+
+int number_here(const ClothPart& part, int v) { return part.sewn.empty() ? v : part.sewn[static_cast<std::size_t>(v)]; }
 
 std::vector<int> read_vertices(const Config& section, const ClothPart& part) {
   if (section["vertices"].given) return listed(section["vertices"], part);

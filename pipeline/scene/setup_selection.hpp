@@ -18,6 +18,11 @@ int index_of(const Config& name, const std::vector<Named>& all) {
             known.empty() ? "there is none" : "known: " + joined(known) + suggestion(name.text(), known));
 }
 
+// How many vertices a part had in its file, or when it was made, and the number in the part of one of these. They
+// differ where vertices were welded or sewn.
+Eigen::Index vertices_as_read(const ClothPart&);
+int number_here(const ClothPart&, int v);
+
 // The vertices that `vertices`, `box` or `group` of a section name; all where it names none. Vertices that are listed
 // keep their order and have the numbers that they were read or made with; those that come back have the part's own.
 std::vector<int> read_vertices(const Config& section, const ClothPart&);

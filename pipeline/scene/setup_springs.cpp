@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/obstacles/setup_pairs.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/setup_selection.hpp"
@@ -26,10 +27,23 @@ void warn_of_short(std::span<const Spring> springs, const std::string& what, con
   const auto shorter =
       std::ranges::count_if(springs, [&](const Spring& spring) { return spring.rest_length < contact.thickness; });
   if (shorter > 0 && contact.self)
+    warnings.push_back(fmt::format(
+        "{}: {} shorter at rest than contact.thickness {} m, to which contact pushes {} apart", what,
+        counted(shorter, "spring is", "springs are"), contact.thickness, by_number(shorter, "its ends", "their ends")));
+}
+
+// A spring that the weight of all cloth stretches by less than an atom is rigid, and solves take long.
+void warn_of_stiff(std::span<const Spring> springs, const std::string& what, const Scene& scene,
+                   std::vector<std::string>& warnings) {
+  constexpr double atom = 1e-9, gravity = 9.81;  // [m], [m/s2]
+  double most = 0;
+  for (const Spring& spring : springs) most = std::max(most, spring.stiffness);
+  const double weight = gravity * lumped_masses(scene).sum();
+  if (most * atom > weight)
     warnings.push_back(
-        fmt::format("{}: {} springs are shorter at rest than contact.thickness {} m, to which contact "
-                    "pushes their ends apart",
-                    what, shorter, contact.thickness));
+        fmt::format("{}: the weight of all cloth stretches a spring of {:.3g} N/m by less than {:g} m, "
+                    "and solves take long; {:.0e} N/m is as good as rigid",
+                    what, most, atom, 1e-3 * weight / atom));
 }
 
 std::vector<Spring> stitches_of(const Wearing& worn, int first_vertex) {
@@ -47,6 +61,7 @@ std::vector<Spring> read_springs(const Config& list, const std::vector<ClothPart
   std::vector<Spring> all;
   const auto add = [&](std::span<const Spring> springs, const std::string& what) {
     warn_of_short(springs, what, scene.contact, warnings);
+    warn_of_stiff(springs, what, scene, warnings);
     all.insert(all.end(), springs.begin(), springs.end());
   };
   for (std::size_t c = 0; c < parts.size(); ++c)

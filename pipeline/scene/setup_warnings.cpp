@@ -12,6 +12,8 @@
 namespace selvedge {
 namespace {
 
+constexpr double storm = 120;  // [m/s]
+
 // How many of the points have a coordinate that a float misses by more than half of `step` [m].
 int coarser_than(double step, const Points& x) {
   int count = 0;
@@ -74,6 +76,37 @@ void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene
                           scene.obstacles[k].name, by_number(count, "it stays", "they stay")));
       }
   }
+}
+
+void warn_of_fast_pins(const std::vector<ClothPart>& parts, double fps, int frames,
+                       std::vector<std::string>& warnings) {
+  for (const ClothPart& part : parts) {
+    const double size = (part.rest.colwise().maxCoeff() - part.rest.colwise().minCoeff()).norm();
+    for (const PinPart& pin : part.pins) {
+      if (!pin.keyed) continue;
+      Points before = pin.at(0);
+      for (int frame = 1; frame <= frames; ++frame) {
+        const Points now = pin.at(frame / fps);
+        const double way = (now - before).rowwise().norm().maxCoeff();
+        if (way > size) {
+          warnings.push_back(fmt::format(
+              "pins {} of cloth `{}` move {:.3g} m in frame {}, and the cloth is {:.3g} m large: it cannot follow, and "
+              "its steps take long; give the motion more time",
+              pin.name, part.name, way, frame, size));
+          break;
+        }
+        before = now;
+      }
+    }
+  }
+}
+
+void warn_of_storm(const std::vector<Vec3>& wind, std::vector<std::string>& warnings) {
+  double most = 0;
+  for (const Vec3& one : wind) most = std::max(most, one.norm());
+  if (most > storm)
+    warnings.push_back(
+        fmt::format("wind of {:.4g} m/s is faster than any storm: steps take long; `velocity` is in m/s", most));
 }
 
 }  // namespace selvedge

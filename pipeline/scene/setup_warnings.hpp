@@ -21,4 +21,11 @@ void warn_of_rounding(const Scene&, const Points& x, const std::vector<Points>& 
 void warn_of_pins_inside(const std::vector<ClothPart>&, const Scene&, const Points& x,
                          const std::vector<Points>& obstacles, std::vector<std::string>& warnings);
 
+// Pins whose keyframes move them in one frame farther than their cloth is large: it cannot follow, and its steps take
+// long.
+void warn_of_fast_pins(const std::vector<ClothPart>&, double fps, int frames, std::vector<std::string>& warnings);
+
+// Wind that is faster than any storm [m/s].
+void warn_of_storm(const std::vector<Vec3>& wind, std::vector<std::string>& warnings);
+
 }  // namespace selvedge

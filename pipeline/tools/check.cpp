@@ -10,6 +10,7 @@
 #include "collision/search/obstacle.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/scene/make_scene.hpp"
+#include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/formats/trajectory_hdf5.hpp"
@@ -184,6 +185,7 @@ void check_mesh(const CheckRequest& request, CheckReport& report) {
   report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
   if (const int joined = weldable(mesh.x, mesh.triangles).joined; joined > 0)
     report.warnings.push_back(unwelded_text(joined, weld_keys_text));
+  for (const std::string& fault : mesh_faults(mesh.x, mesh.triangles)) report.warnings.push_back(fault);
   Bodies bodies;
   add_body_files(request, bodies, report);
   const Scene scene = rest_scene(static_cast<int>(mesh.x.rows()), mesh.triangles,

@@ -11,6 +11,7 @@
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
@@ -114,17 +115,18 @@ std::string frame_options(const MeshFrame& frame) {
   return "--unit " + frame.unit + " --up " + (frame.up == Up::y ? "y" : "z");
 }
 
-std::string frame_cure(const Points& x, const Points& body, const Triangles& triangles) {
-  const std::optional<MeshFrame> frame = clear_frame(fitting_frames(x, body, triangles));
+std::string frame_cure(const Mesh& mesh, const Points& body, const Triangles& body_triangles) {
+  const std::optional<MeshFrame> frame = clear_frame(fitting_frames(mesh.x, mesh.triangles, body, body_triangles));
   return frame ? frame_options(*frame) + " would put it there" : "are unit, pose and body right?";
 }
 
 // How the mesh is meant: as the request says, or as it lies on the body.
-MeshFrame frame_of(const DressRequest& request, const Points& x, const Points& body, const Triangles& triangles,
+MeshFrame frame_of(const DressRequest& request, const Mesh& mesh, const Points& body, const Triangles& body_triangles,
                    std::string& reason) {
   MeshFrame frame{request.unit.value_or("m"), request.up.value_or(Up::y)};
   if (request.unit && request.up) return frame;
-  const std::vector<FrameFit> fits = fitting_frames(x, body, triangles, request.unit, request.up);
+  const std::vector<FrameFit> fits =
+      fitting_frames(mesh.x, mesh.triangles, body, body_triangles, request.unit, request.up);
   if (fits.empty()) {
     reason = "assumed: in no unit and with no axis up does the mesh lie on the body";
     return frame;
@@ -133,9 +135,10 @@ MeshFrame frame_of(const DressRequest& request, const Points& x, const Points& b
   if (!clear)
     throw Error(fmt::format("would lie on the body about equally well in {} and in {}", frame_text(fits[0].frame),
                             frame_text(fits[1].frame)),
-                request.mesh.string(), "say which by --unit and --up");
+                request.mesh.string(),
+                fmt::format("say which: {} or {}", frame_options(fits[0].frame), frame_options(fits[1].frame)));
   reason = fmt::format("guessed: so it lies on the body, {}; {} says the same",
-                       fits.size() == 1 ? "and in no other unit or with the other axis up"
+                       fits.size() == 1 ? "and in any other way it does not, or crosses it"
                                         : "and nearer than in " + frame_text(fits[1].frame),
                        frame_options(*clear));
   return *clear;
@@ -160,10 +163,12 @@ DressReport dress(const DressRequest& request) {
   const Performance who = read_wearer(request);
   DressReport report;
   const BodyPose stands = read_pose(request, who);
-  const Points as_read = mesh.x, worn_by = body_in(who, stands);
+  const Mesh as_read = mesh;
+  const Points worn_by = body_in(who, stands);
   report.frame = frame_of(request, as_read, worn_by, who.body.skin.triangles, report.frame_reason);
-  mesh.x = in_metres(as_read, report.frame);
+  mesh.x = in_metres(as_read.x, report.frame);
   weld_pieces(request, mesh, report);
+  for (const std::string& fault : mesh_faults(mesh.x, mesh.triangles)) report.warnings.push_back(fault);
   report.warnings.insert(report.warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
   report.warnings.insert(report.warnings.end(), who.warnings.begin(), who.warnings.end());
   if (request.pose && !who.clip.poses.empty() && request.time > end_of(who.clip))

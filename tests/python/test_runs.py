@@ -133,6 +133,15 @@ def test_export_writes_files_and_says_how_far_it_is(run, tmp_path, capsys):
         selvedge.export(run, "fbx", tmp_path / "meshes")
 
 
+def test_what_a_progress_raises_ends_an_export(run, tmp_path):
+    def fail(done, all):
+        raise KeyError(f"{done} of {all}")
+
+    with pytest.raises(KeyError, match="1 of 9"):
+        selvedge._selvedge.export_run(run, "obj", tmp_path / "none", False, fail)
+    assert len(selvedge.export(run, "obj", tmp_path / "meshes")) > 0
+
+
 def test_progress_is_a_bar_of_tqdm(run, tmp_path, capsys):
     pytest.importorskip("tqdm")
     selvedge.export(run, "obj", tmp_path / "meshes", progress=True)

@@ -4,6 +4,8 @@ import gc
 import os
 import subprocess
 import sys
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -91,6 +93,8 @@ def test_an_obstacle_moves():
         (np.eye(3), [[0.5, 1, 2]], ["triangles", "float64"]),
         (np.eye(3), [[0, 1, 1]], ["triangle 0", "twice"]),
         (np.eye(3), [0, 1, 2], ["triangles", "(3,)"]),
+        (np.eye(3), np.zeros((0, 3), int), ["triangles", "no rows"]),
+        (np.ma.array(np.eye(3), mask=np.eye(3) > 0), [[0, 1, 2]], ["cloth `c`, x", "masked"]),
     ],
 )
 def test_bad_arrays_say_what_and_where(x, triangles, words):
@@ -98,6 +102,14 @@ def test_bad_arrays_say_what_and_where(x, triangles, words):
         selvedge.Scene().add_cloth(x, triangles, name="c")
     assert all(word in str(error.value) for word in words), str(error.value)
     assert isinstance(error.value, ValueError)
+
+
+def test_a_mask_that_hides_nothing_and_a_face_whose_edges_cross():
+    x, triangles = sheet(3)
+    selvedge.Scene().add_cloth(np.ma.array(x), triangles)
+    corners = [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]  # not in their order round the square
+    with pytest.warns(UserWarning, match="cloth `bow`: 1 pair of neighbouring triangles lies flat on each other"):
+        selvedge.Scene().add_cloth(corners, [[0, 1, 2], [0, 2, 3]], name="bow")
 
 
 @pytest.mark.parametrize(
@@ -173,6 +185,34 @@ def test_check_and_untangle():
     moved, report = selvedge.untangle(*both)
     assert report["pairs_before"] == selvedge.check(*both)["self_pairs"]
     assert selvedge.check(moved, both[1])["self_pairs"] == report["pairs_after"]
+
+
+def turns_beside(work):
+    """How often another thread has its turn while the work is done."""
+    turns, done = [], threading.Event()
+
+    def count():
+        while not done.wait(0.001):
+            turns.append(time.monotonic())
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    begin = time.monotonic()
+    work()
+    end = time.monotonic()
+    done.set()
+    thread.join()
+    return sum(begin < turn < end for turn in turns)
+
+
+def test_other_threads_go_on_beside_long_work():
+    x, triangles = sheet(300)
+    y = x[:, [0, 2, 1]] * 0.3 + [0.355, -0.2, 0.513]  # stands across it
+    body = (y, triangles)
+    # Work that holds the lock lets the other thread have one turn or two, before and after.
+    assert turns_beside(lambda: selvedge.check(x, triangles, [body])) > 5
+    assert turns_beside(lambda: selvedge.distance(y, x, triangles)) > 5
+    assert turns_beside(lambda: selvedge.untangle(x, triangles, [body], iterations=1)) > 5
 
 
 def test_contours():

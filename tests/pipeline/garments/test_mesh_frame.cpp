@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <numbers>
+
 #include "pipeline/config/config_units.hpp"
 #include "tests/pipeline/fake_garment.hpp"
 
@@ -34,13 +36,34 @@ TEST_CASE("unit and axis of a garment's file are known from where it lies on the
         const Points x = in_file(piece.x, meant);
         INFO(frame_text(meant));
         CHECK((in_metres(x, meant) - piece.x).cwiseAbs().maxCoeff() < 1e-12);
-        const auto found = clear_frame(fitting_frames(x, body.skin.rest, body.skin.triangles));
+        const auto found = clear_frame(fitting_frames(x, piece.triangles, body.skin.rest, body.skin.triangles));
         REQUIRE(found);
         CHECK(frame_text(*found) == frame_text(meant));
         // What is given is not asked.
-        for (const FrameFit& fit : fitting_frames(x, body.skin.rest, body.skin.triangles, "cm", Up::z))
+        for (const FrameFit& fit : fitting_frames(x, piece.triangles, body.skin.rest, body.skin.triangles, "cm", Up::z))
           CHECK(frame_text(fit.frame) == "cm, z up");
       }
+}
+
+TEST_CASE("a wide skirt, about as near to the body with the other axis up, does not cross it", "[mesh_frame]") {
+  const BodyModel& body = fake::mannequin();
+  for (const double hem : {0.3, 0.45, 0.6, 0.75})
+    for (const Up up : {Up::y, Up::z}) {
+      constexpr int around = 48, rows = 12;
+      fake::Piece skirt = fake::skirt(body, -0.4, 0.08, 0.02, around, rows);
+      for (Eigen::Index v = 0; v < skirt.x.rows(); ++v) {
+        const double down = static_cast<double>(v / around) / static_cast<double>(skirt.x.rows() / around - 1);
+        const double angle = 2 * std::numbers::pi * static_cast<double>(v % around) / around;
+        const double radius = 0.17 + (hem - 0.17) * down;
+        skirt.x.row(v) << radius * std::cos(angle), 0.08 - 0.48 * down, radius * std::sin(angle);
+      }
+      const MeshFrame meant{"cm", up};
+      INFO(frame_text(meant) << ", hem " << hem);
+      const auto found =
+          clear_frame(fitting_frames(in_file(skirt.x, meant), skirt.triangles, body.skin.rest, body.skin.triangles));
+      REQUIRE(found);
+      CHECK(frame_text(*found) == frame_text(meant));
+    }
 }
 
 TEST_CASE("what lies on the body in several ways is not guessed", "[mesh_frame]") {
@@ -50,11 +73,11 @@ TEST_CASE("what lies on the body in several ways is not guessed", "[mesh_frame]"
   Triangles faces(12, 3);
   faces << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5;
   const Points shell = 1.05 * cube;
-  const std::vector<FrameFit> fits = fitting_frames(shell, cube, faces);
+  const std::vector<FrameFit> fits = fitting_frames(shell, faces, cube, faces);
   REQUIRE(fits.size() > 1);
   CHECK_FALSE(clear_frame(fits));
   CHECK_FALSE(clear_frame({}));
-  CHECK(frame_text(clear_frame(fitting_frames(shell, cube, faces, "m", Up::z)).value()) == "m, z up");
+  CHECK(frame_text(clear_frame(fitting_frames(shell, faces, cube, faces, "m", Up::z)).value()) == "m, z up");
 }
 
 }  // namespace selvedge::test_mesh_frame

@@ -263,7 +263,7 @@ TEST_CASE("A garment brings its stitches along: behind other cloths, as long as 
   CHECK((springs[1].a == 14 && springs[1].b == 11 && springs[1].rest_length == Approx(0.005)));
   CHECK((springs[0].stiffness == Spring{}.stiffness && springs[2].stiffness == 20 && springs[2].a == 10));
   REQUIRE(setup.warnings.size() == 1);
-  CHECK_THAT(setup.warnings[0], Contains("stitches of band: 1 springs are shorter"));
+  CHECK_THAT(setup.warnings[0], Contains("stitches of band: 1 spring is shorter"));
 }
 
 TEST_CASE("Pockets of a garment by code stay where they are stitched", "[setup_garment]") {
@@ -339,6 +339,14 @@ TEST_CASE("A garment's mesh is welded and turned as its section says, and warned
   CHECK(welded.scene.surface.component_count == 1);
   CHECK(welded.scene.surface.vertex_count == piece.x.rows());
   CHECK(welded.scene.surface.triangles.rows() == piece.triangles.rows());
+  // Pins have the numbers of the file.
+  const Setup pinned =
+      read(folder,
+           "{garment: {file: band.obj, unit: cm, up: z, weld: true, pins: false}, pins: [{vertices: [" +
+               std::to_string(x.rows() - 1) + "]}]}",
+           person);
+  REQUIRE(pinned.scene.pins.size() == 1);
+  CHECK(pinned.scene.pins[0] == welded.scene.surface.triangles(triangles.rows() - 1, 2));
   CHECK(setup(", unit: cm, up: z, weld: true, weld_within: 0.1 mm").scene.surface.vertex_count == piece.x.rows());
   CHECK_THROWS_WITH(setup(", unit: cm, up: z, weld_within: 0.1 mm"), Contains("without `weld`"));
 }

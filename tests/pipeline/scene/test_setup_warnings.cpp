@@ -86,6 +86,34 @@ TEST_CASE("Pins inside a collider are named", "[setup_warnings]") {
   CHECK(scenes.warnings(cape + "0.4" + rest).empty());
 }
 
+TEST_CASE("What steps would take long over is told before them", "[setup_warnings]") {
+  const Scenes scenes;
+  const std::string sheet =
+      "{name: a, rectangle: {size: [0.4, 0.3], resolution: 5}, pins: [{group: [top_left], motion: "
+      "{keyframes: [{time: 0}, {time: 1, translate: [";
+  const auto pulled = [&](double way) {
+    return scenes.warnings("cloths: [" + sheet + std::to_string(way) + ", 0, 0]}]}}]}]\nrun: {fps: 10, frames: 20}\n");
+  };
+  CHECK_THAT(pulled(60), Contains("pins of group top_left of cloth `a` move 6 m in frame 1, and the cloth is 0.5 m"));
+  CHECK(pulled(4.9).empty());
+
+  const std::string lies = "cloths: [{name: a, rectangle: {size: [0.4, 0.3], resolution: 5}}]\n";
+  CHECK_THAT(scenes.warnings(lies + "wind: {velocity: [1000, 0, 0]}\n"), Contains("wind of 1000 m/s"));
+  CHECK_THAT(scenes.warnings(lies + "wind: {keyframes: [{time: 0, velocity: [0, 0, 0]}, {time: 1, velocity: [0, 150, "
+                                    "0]}]}\n"),
+             Contains("wind of 150 m/s"));
+  CHECK(scenes.warnings(lies + "wind: {velocity: [40, 0, 0]}\n").empty());
+
+  const auto joined = [&](const std::string& stiffness) {
+    return scenes.warnings(
+        lies + "springs: [{from: {vertices: [0]}, to: {vertices: [24]}, rest_length: 0.5, stiffness: " + stiffness +
+        "}]\n");
+  };
+  CHECK_THAT(joined("1e15"), Contains("springs[0]") || Contains("springs.0"));
+  CHECK_THAT(joined("1e15"), Contains("1e+15 N/m") && Contains("as good as rigid"));
+  CHECK(joined("1e6").empty());
+}
+
 TEST_CASE("Finite but absurd numbers are refused with their place and value", "[setup_warnings]") {
   const Scenes scenes;
   fake::write(scenes.folder, "x.obj", "v 0 0 0\nv 1 0 0\nv 0 0 -2147483648\nf 1 2 3\n");

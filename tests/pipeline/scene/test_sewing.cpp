@@ -229,6 +229,36 @@ TEST_CASE("sewing: a rectangle cut in two and sewn is the rectangle, and moves a
           one.scene.surface.triangles);
 }
 
+TEST_CASE("sewing: what a scene lists has the numbers of the file, also where the mesh is welded", "[sewing]") {
+  const Folder folder("sewing_welded");
+  // Three panels in a row: the first two meet in two vertices, the third has a gap.
+  Obj obj;
+  const int first = obj.panel("a", 1, 1, 0.1, 0.1, {0, 0, 0}, false),
+            second = obj.panel("b", 1, 1, 0.1, 0.1, {0.1, 0, 0}, false),
+            third = obj.panel("c", 1, 1, 0.1, 0.1, {0.21, 0, 0}, false);
+  REQUIRE((first == 0 && second == 4 && third == 8));
+  fake::write(folder, "row.obj", obj.text);
+  fake::write(folder, "pairs.txt", "5 8\n7 10\n1 4\n");  // the last pair is welded already
+  const std::string list =
+      "pins: [{vertices: [4, 7]}]}]\n"
+      "springs: [{from: {cloth: row, vertices: [4, 7]}, to: {cloth: row, vertices: [9, 11]}}]\n";
+  const Setup welded = read(folder, "cloths: [{name: row, mesh: {file: row.obj, weld: true}, " + list);
+  CHECK(welded.scene.surface.vertex_count == 10);
+  CHECK(welded.scene.pins == std::vector<int>{1, 5});
+  REQUIRE(welded.scene.springs.size() == 2);
+  CHECK((welded.scene.springs[0].a == 1 && welded.scene.springs[0].b == 7));
+  CHECK((welded.scene.springs[1].a == 5 && welded.scene.springs[1].b == 9));
+  for (const char* seams : {"{file: pairs.txt}", "{from: {vertices: [5, 7]}, to: {vertices: [8, 10]}}"}) {
+    const Setup sewn = read(
+        folder, fmt::format("cloths: [{{name: row, mesh: {{file: row.obj, weld: true}}, seams: [{}], {}", seams, list));
+    CHECK(sewn.scene.surface.vertex_count == 8);
+    CHECK(sewn.scene.pins == std::vector<int>{1, 5});
+    CHECK((sewn.scene.springs[0].b == 6 && sewn.scene.springs[1].b == 7));
+  }
+  CHECK_THROWS_WITH(read(folder, "cloths: [{mesh: {file: row.obj, weld: true}, pins: [{vertices: [12]}]}]"),
+                    Contains("allowed: 0 to 11"));
+}
+
 TEST_CASE("sewing: two panels become a tube that starts in the middle and keeps the panels' rest shape", "[sewing]") {
   const Folder folder("sewing");
   fake::write(folder, "tube.obj", tube_file());

@@ -257,7 +257,8 @@ TEST_CASE("A mesh that lies on the body equally well in two ways is refused, wit
   DressRequest request;
   request.mesh = write_grouped(folder, tube);
   request.out = folder.path / "tube.h5";
-  CHECK_THROWS_WITH(dress(request), Contains("m, y up") && Contains("m, z up") && Contains("--unit and --up"));
+  CHECK_THROWS_WITH(dress(request), Contains("m, y up") && Contains("m, z up") && Contains("--unit m --up y") &&
+                                        Contains("--unit m --up z"));
   CHECK_FALSE(std::filesystem::exists(request.out));
   request.unit = "m";
   CHECK_THROWS_WITH(dress(request), Contains("m, y up") && Contains("m, z up"));
