@@ -11,7 +11,7 @@ function bindMaps(page) {
   const {look, runs} = page, strain = element("strain");
   const buttons = runs[0].maps.map((map, m) => {
     const button = document.createElement("button");
-    button.textContent = map.name;
+    button.textContent = map.name[0].toUpperCase() + map.name.slice(1);
     button.title = `Colour by ${map.name}`;
     button.addEventListener('click', () => {
       const shown = mapOf(runs[0], look) === map;

@@ -28,7 +28,7 @@ SPEC.loader.exec_module(runner)
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """The folder of the demo's page: its first frames by the solver, and by a network with intersecting pairs."""
+    """The folder of the demo's page: its first frames by the solver, and by a network."""
     if not shutil.which("chromium"):
         pytest.skip("chromium is not installed")
     if not PROGRAM:
@@ -42,7 +42,7 @@ def page(tmp_path_factory):
         [PROGRAM, "view", folder / "conventional", folder / "learned", "--out", folder / "view.html"],
     ):
         done = subprocess.run(list(map(str, options)), capture_output=True, text=True)
-        assert done.returncode in (0, 1), done.stderr  # 1: the network's cloth intersects
+        assert done.returncode in (0, 1), done.stderr  # 1: cloth intersects
     return folder
 
 
@@ -64,7 +64,7 @@ def test_the_page_of_the_demo_looks_as_it_did(page):
 
 
 def test_the_comparison_sees_what_is_small(page):
-    """Another frame; no marks of intersecting pairs."""
+    """Another frame; another button that is pressed."""
     shown = runner.picture_of(VIEW, page)
     for change in (("frame=8", "frame=4"), ("plots=0", "plots=0&marks=0")):
         other = runner.picture_of(VIEW.replace(*change), page)

@@ -18,6 +18,7 @@ constexpr double dt = 1.0 / 30, gravity = 9.81;
 std::unique_ptr<Stepper> stepper_of(const Scene& scene, bool measured = true, bool rest = false) {
   ConventionalOptions options;
   options.contact_forces = measured;
+  options.implicit_euler.velocity_tolerance = options.implicit_euler.relative_tolerance = 1e-4;  // for sums within 1 %
   return decorated(scene, conventional_maker(options), {.rest = rest});
 }
 
