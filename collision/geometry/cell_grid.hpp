@@ -33,14 +33,6 @@ class CellGrid {
   // The same, but visits the points' places in `order`, ascending.
   template <class Visit>
   void for_each_place_near(const Vec3& at, double radius, Visit visit) const {
-    for_each_range_near(at, radius, [&](int begin, int end) {
-      for (int p = begin; p < end; ++p) visit(p);
-    });
-  }
-
-  // The same, but visits ranges [begin, end) of these places, one for each row of cubes.
-  template <class Visit>
-  void for_each_range_near(const Vec3& at, double radius, Visit visit) const {
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
       from[k] = std::max(0, coordinate(at[k] - radius, k));
@@ -48,7 +40,8 @@ class CellGrid {
     }
     if (from[2] > to[2]) return;
     for (int i = from[0]; i <= to[0]; ++i)
-      for (int j = from[1]; j <= to[1]; ++j) visit(first(cell(i, j, from[2])), first(cell(i, j, to[2]) + 1));
+      for (int j = from[1]; j <= to[1]; ++j)
+        for (int p = first(cell(i, j, from[2])); p < first(cell(i, j, to[2]) + 1); ++p) visit(p);
   }
 
   // Visits the cubes within `rings` of a cube along each axis, with the cube itself, in ascending order: the first and

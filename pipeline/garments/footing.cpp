@@ -1,11 +1,7 @@
 #include "pipeline/garments/footing.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
-
-#include "collision/search/bvh_traversal.hpp"
-
 namespace selvedge {
 namespace {
 
@@ -14,25 +10,6 @@ constexpr double near = 0.03, far = 0.06;             // from the foot: nearer s
 constexpr double beside = 0.01;                       // this near to the line out from the foot counts as on it [m]
 constexpr double cell = far / 2;                      // edge of the cubes in which other parts are looked for [m]
 constexpr double facing = -0.3;                       // largest cosine of its normal with the direction out
-
-constexpr float of_a_cosine = 1e-6F;  // bounds the error of a cosine in float
-
-// One bit for each of the eight vertices: 0 only if it is not above `from`, not below `most` along the line, or does
-// not face it.
-unsigned may_be_on_line(const PosedSkin::Eight& eight, float rounding, const Vec3& from, const Vec3& along,
-                        double most) {
-  const float beyond = static_cast<float>(most) + rounding, cosine = static_cast<float>(facing) + of_a_cosine;
-  const auto half = [&](int h) {
-    Bvh::Lanes height{}, dot{};
-    for (int k = 0; k < 3; ++k) {
-      const float way = static_cast<float>(along[k]);
-      height += (eight.x[k][h] - static_cast<float>(from[k])) * way;
-      dot += eight.normal[k][h] * way;
-    }
-    return (height > -rounding) & (height < beyond) & (dot <= cosine);
-  };
-  return bits_of(half(0), half(1));
-}
 
 // For each foot the distance along the line out to x at which another part of the body begins [m]. A part beside the
 // line counts as farther by its distance from it. Infinite if no part is near enough to matter.
@@ -44,19 +21,12 @@ std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, co
     const double out = way.norm(), most = out / first_part;
     if (!(out > 0 && out < far)) continue;
     const Vec3 along = way / out;
-    const auto look_at = [&](int p) {
+    body.grid.for_each_place_near(from, most + beside, [&](int p) {
       const Vec3 to = row(body.x_in_order, p) - from;
       const double height = to.dot(along);
       if (!(height > 0 && height < std::min(gap[v], most)) || row(body.normals_in_order, p).dot(along) > facing) return;
       const double there = height + std::max(0.0, (to - height * along).norm() - beside);
       if (there < most) gap[v] = std::min(gap[v], there);
-    };
-    body.grid.for_each_range_near(from, most + beside, [&](int begin, int end) {
-      for (int first = begin / 8 * 8; first < end; first += 8) {
-        unsigned bits = may_be_on_line(body.eights[first / 8], body.rounding, from, along, std::min(gap[v], most));
-        for (; bits != 0; bits &= bits - 1)
-          if (const int p = first + std::countr_zero(bits); p >= begin && p < end) look_at(p);
-      }
     });
   }
   return gap;
@@ -68,18 +38,7 @@ PosedSkin::PosedSkin(const Surface& body, const Points& posed)
     : x(posed),
       grid(posed, cell),
       x_in_order(posed(grid.order(), Eigen::all)),
-      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)),
-      eights(static_cast<std::size_t>((posed.rows() + 7) / 8)),
-      rounding(static_cast<float>(4e-6 * largest_coordinate(posed))) {
-  for (std::size_t p = 0; p < 8 * eights.size(); ++p)
-    for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<Eigen::Index>(p);
-      const bool is_there = v < posed.rows();
-      constexpr double none = std::numeric_limits<double>::quiet_NaN();
-      eights[p / 8].x[k][p % 8 / 4][p % 4] = static_cast<float>(is_there ? x_in_order(v, k) : none);
-      eights[p / 8].normal[k][p % 8 / 4][p % 4] = static_cast<float>(is_there ? normals_in_order(v, k) : none);
-    }
-}
+      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {}
 
 Footing footing_of(const Points& x, const PosedSkin& rest) {
   Footing footing;

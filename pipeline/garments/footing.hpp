@@ -4,7 +4,6 @@
 
 #include "collision/geometry/cell_grid.hpp"
 #include "collision/geometry/surface.hpp"
-#include "collision/search/bvh.hpp"
 
 namespace selvedge {
 
@@ -21,13 +20,6 @@ struct PosedSkin {
   Points x;  // [m]
   CellGrid grid;
   Points x_in_order, normals_in_order;  // in the grid's order
-
-  // The same of eight vertices, rounded to float; vertex i in lane i % 4 of half i / 4. NaN where none is left.
-  struct Eight {
-    Bvh::Lanes x[3][2], normal[3][2];
-  };
-  std::vector<Eight> eights;
-  float rounding;  // bounds the error of a distance along a line that is computed from these [m]
 };
 
 // The footing of a surface x that is worn by the body at rest [m]. The parts of the body must be apart there.
