@@ -122,8 +122,8 @@ void SceneObject::record(const std::filesystem::path& folder) {
   make_folder(folder);
   auto lock = std::make_unique<FolderLock>(folder);
   remove_results(folder);
-  const TrajectoryInfo info = trajectory_info(setup_.scene, setup_.config, stepper_->traits().name, setup_.run.fps);
-  recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", info),
+  TrajectoryInfo info = trajectory_info(setup_.scene, setup_.config, stepper_->traits().name, setup_.run.fps);
+  recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", std::move(info)),
                                  energy_terms(setup_.scene, stepper_->traits())});
   recording_->writer.append(record_initial(setup_.scene, recording_->terms, state_, setup_.drive_at(state_.time)));
 }
