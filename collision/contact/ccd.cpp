@@ -56,14 +56,18 @@ struct Directions {
   Vec3 normal;   // of the polygon, toward the same side
 };
 
-Directions directions(const MovingPolygon& p, double time) {
+Vec3 to_closest(const MovingPolygon& p, double time) {
   const bool triangle = p.corners == 3;
-  const Vec3 first = p.at(0, time), second = p.at(1, time), third = p.at(2, time);
+  const Vec3 first = p.at(0, time), second = p.at(1, time);
   const std::array<Vec3, 4> x{Vec3::Zero(), triangle ? first : Vec3(first - second), triangle ? second : first,
-                              triangle ? third : p.at(3, time)};
+                              triangle ? p.at(2, time) : p.at(3, time)};
   const Closest c = triangle ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
-  const Vec3 closest = -(c.weights[1] * x[1] + c.weights[2] * x[2] + c.weights[3] * x[3]);
-  const Vec3 normal = (second - first).cross(third - first);
+  return -(c.weights[1] * x[1] + c.weights[2] * x[2] + c.weights[3] * x[3]);
+}
+
+Directions directions(const MovingPolygon& p, double time) {
+  const Vec3 closest = to_closest(p, time), first = p.at(0, time);
+  const Vec3 normal = (p.at(1, time) - first).cross(p.at(2, time) - first);
   return {closest, normal.dot(closest) < 0 ? Vec3(-normal) : normal};
 }
 
@@ -105,6 +109,8 @@ std::optional<double> first_approach(PairKind kind, const std::array<Vec3, 4>& x
                                      double min_separation, int max_iterations) {
   const MovingPolygon p = moving_polygon(kind, x0, x1);
   double limit = min_separation * p.scale, time = 0;
+  // Most pairs are apart all the way along the direction between their closest points in the middle of the motion.
+  if (free_until(p, to_closest(p, 0.5), 0, limit) > 1) return std::nullopt;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const Directions apart = directions(p, time);
     double until = free_until(p, apart, time, limit);

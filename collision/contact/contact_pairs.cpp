@@ -4,8 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "collision/contact/exemption.hpp"
+#include "collision/contact/pair_motion.hpp"
 
 namespace selvedge {
 namespace {
@@ -52,76 +54,101 @@ template <class Visit>
   }
 }
 
+// Which of the pairs with overlapping boxes a search lists.
+struct Wanted {
+  const ContactWorld& world;
+  const std::vector<char>& marks;  // by node: only pairs with a marked one; empty: all pairs
+  const Exemption* left_out;       // may be null
+  const PairMotion* motion;        // only pairs that may come within `reach`; null: all pairs
+  const Points& x0;
+  double reach;
+
+  void add(const NodePair& pair, FoundPairs& found) const {
+    ++found.overlapping;
+    if (!marks.empty() && std::ranges::none_of(pair.nodes, [&](int node) { return marks[node] != 0; })) return;
+    if (left_out && left_out->leaves_alone(world, pair.nodes)) return;
+    if (motion) {
+      const std::optional<double> gap = gap_if_near(*motion, pair, x0, reach);
+      if (!gap) return;
+      found.gap.push_back(*gap);
+    }
+    found.pairs.push_back(pair);
+  }
+};
+
 struct LeafPairs {
   const Side &a, &b;
   bool same;  // both sides are one surface: primitives that share a vertex are no pair
+  const Wanted& wanted;
 
-  void vertex_face(const Side& p, int v, const Side& f, int face, std::vector<NodePair>& pairs) const {
+  void vertex_face(const Side& p, int v, const Side& f, int face, FoundPairs& found) const {
     const int* n = f.surface().triangles.data() + 3 * face;
     if (same && (v == n[0] || v == n[1] || v == n[2])) return;
-    pairs.push_back({PairKind::vertex_face,
-                     {v + p.first_node(), n[0] + f.first_node(), n[1] + f.first_node(), n[2] + f.first_node()}});
+    wanted.add({PairKind::vertex_face,
+                {v + p.first_node(), n[0] + f.first_node(), n[1] + f.first_node(), n[2] + f.first_node()}},
+               found);
   }
-  void edge_edge(int ea, int eb, std::vector<NodePair>& pairs) const {
+  void edge_edge(int ea, int eb, FoundPairs& found) const {
     if (same && eb < ea) std::swap(ea, eb);
     const int *m = a.surface().edges.data() + 2 * ea, *n = b.surface().edges.data() + 2 * eb;
     if (same && (m[0] == n[0] || m[0] == n[1] || m[1] == n[0] || m[1] == n[1])) return;
-    pairs.push_back({PairKind::edge_edge,
-                     {m[0] + a.first_node(), m[1] + a.first_node(), n[0] + b.first_node(), n[1] + b.first_node()}});
+    wanted.add({PairKind::edge_edge,
+                {m[0] + a.first_node(), m[1] + a.first_node(), n[0] + b.first_node(), n[1] + b.first_node()}},
+               found);
   }
   void vertices_with_faces(const Side& p, int leaf_p, const Side& f, int leaf_f, const Box& box_f,
-                           std::vector<NodePair>& pairs) const {
+                           FoundPairs& found) const {
     const Group faces = f.faces(leaf_f);
     p.for_each_group(
         p.part.vertices, p.part.vertices.begin[leaf_p], p.part.vertices.begin[leaf_p + 1], [&](const Group& group) {
           for_each_near(group, faces, box_f,
-                        [&](int i, int j) { vertex_face(p, group.leaf.item[i], f, faces.leaf.item[j], pairs); });
+                        [&](int i, int j) { vertex_face(p, group.leaf.item[i], f, faces.leaf.item[j], found); });
         });
   }
-  void edges_with_edges(const Group& first, int from, int to, const Box& box_b, std::vector<NodePair>& pairs) const {
+  void edges_with_edges(const Group& first, int from, int to, const Box& box_b, FoundPairs& found) const {
     b.for_each_group(b.part.edges, from, to, [&](const Group& second) {
       for_each_near(first, second, box_b,
-                    [&](int i, int j) { edge_edge(first.leaf.item[i], second.leaf.item[j], pairs); });
+                    [&](int i, int j) { edge_edge(first.leaf.item[i], second.leaf.item[j], found); });
     });
   }
-  void edges_with_edges(int leaf_a, int leaf_b, const Box& box_b, std::vector<NodePair>& pairs) const {
+  void edges_with_edges(int leaf_a, int leaf_b, const Box& box_b, FoundPairs& found) const {
     a.for_each_group(a.part.edges, a.part.edges.begin[leaf_a], a.part.edges.begin[leaf_a + 1], [&](const Group& first) {
-      edges_with_edges(first, b.part.edges.begin[leaf_b], b.part.edges.begin[leaf_b + 1], box_b, pairs);
+      edges_with_edges(first, b.part.edges.begin[leaf_b], b.part.edges.begin[leaf_b + 1], box_b, found);
     });
   }
-  void edges_within(int leaf, const Box& box, std::vector<NodePair>& pairs) const {
+  void edges_within(int leaf, const Box& box, FoundPairs& found) const {
     int next = a.part.edges.begin[leaf];
     const int last = a.part.edges.begin[leaf + 1];
     a.for_each_group(a.part.edges, next, last, [&](const Group& own) {
       for (int i = 0; i < Bvh::leaf_size && own.leaf.item[i] >= 0; ++i)
         for (unsigned bits = own.near(i, own) & (~1u << i); bits != 0; bits &= bits - 1)
-          edge_edge(own.leaf.item[i], own.leaf.item[std::countr_zero(bits)], pairs);
-      edges_with_edges(own, ++next, last, box, pairs);
+          edge_edge(own.leaf.item[i], own.leaf.item[std::countr_zero(bits)], found);
+      edges_with_edges(own, ++next, last, box, found);
     });
   }
-  std::int64_t operator()(NodeWork w, std::vector<NodePair>& pairs) const {
-    const std::size_t before = pairs.size();
+  std::int64_t operator()(NodeWork w, FoundPairs& found) const {
+    const std::int64_t before = found.overlapping;
     const Bvh::Node &node_a = a.bvh().nodes[w.a], &node_b = b.bvh().nodes[w.b];
-    vertices_with_faces(a, ~node_a.child, b, ~node_b.child, node_b.box, pairs);
+    vertices_with_faces(a, ~node_a.child, b, ~node_b.child, node_b.box, found);
     if (same && w.a == w.b) {
-      edges_within(~node_a.child, node_a.box, pairs);
+      edges_within(~node_a.child, node_a.box, found);
     } else {
-      vertices_with_faces(b, ~node_b.child, a, ~node_a.child, node_a.box, pairs);
-      edges_with_edges(~node_a.child, ~node_b.child, node_b.box, pairs);
+      vertices_with_faces(b, ~node_b.child, a, ~node_a.child, node_a.box, found);
+      edges_with_edges(~node_a.child, ~node_b.child, node_b.box, found);
     }
-    return static_cast<std::int64_t>(pairs.size() - before);
+    return found.overlapping - before;
   }
 };
 
+// Appends what a part has found. The next search uses its memory again, unless that is large.
+void take(FoundPairs& found, std::vector<NodePair>& pairs, std::vector<double>& gap) {
+  constexpr std::size_t small = 4096;
+  pairs.insert(pairs.end(), found.pairs.begin(), found.pairs.end());
+  gap.insert(gap.end(), found.gap.begin(), found.gap.end());
+  if (found.pairs.capacity() > small) found = {};
+}
+
 }  // namespace
-
-std::array<Vec3, 4> corners(const NodePair& pair, const Points& x) {
-  return {row(x, pair.nodes[0]), row(x, pair.nodes[1]), row(x, pair.nodes[2]), row(x, pair.nodes[3])};
-}
-
-Closest closest(PairKind kind, const std::array<Vec3, 4>& x) {
-  return kind == PairKind::vertex_face ? point_triangle(x[0], x[1], x[2], x[3]) : edge_edge(x[0], x[1], x[2], x[3]);
-}
 
 PairSearch::PairSearch(const ContactWorld& world) : world_(world), cloth_(*world.cloth, 0) {
   for (std::size_t k = 0; k < world.obstacles.size(); ++k)
@@ -140,11 +167,7 @@ void PairSearch::fill(bool only_marked) {
     obstacle.fill([&](int node) { return meets(cloth_, box(obstacle, node), only_marked && !obstacle.marks[node]); });
 }
 
-void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
-                      const std::vector<char>& marks) {
-  pairs.clear();
-  // Boxes at both ends separate more pairs than boxes of whole motions only where motions are longer than the radius.
-  const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
+void PairSearch::prepare(const Points& x0, const Points& x1, double radius, bool ends, const std::vector<char>& marks) {
   const auto move = [&](SearchPart& part) {
     part.move(x0, x1, radius, ends);
     if (!marks.empty()) part.mark(marks);
@@ -152,25 +175,56 @@ void PairSearch::find(const Points& x0, const Points& x1, double radius, std::ve
   move(cloth_);
   std::ranges::for_each(obstacles_, move);
   fill(!marks.empty());
+}
+
+void PairSearch::collect(const Points& x0, const Points& x1, double radius, const PairMotion* motion,
+                         std::vector<NodePair>& pairs, std::vector<double>& gap, const std::vector<char>& marks) {
+  pairs.clear();
+  gap.clear();
+  // Boxes at both ends separate more pairs than boxes of whole motions only where motions are longer than the radius.
+  const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
+  prepare(x0, x1, radius, ends, marks);
   const auto side = [&](const SearchPart& p) {
     return Side{p, ends ? p.node_ends.data() : nullptr, marks.empty() ? nullptr : p.marks.data()};
   };
   const Side cloth = side(cloth_);
+  const Wanted wanted{world_, marks, left_out_, motion, x0, radius};
+  std::int64_t overlapping = 0;
   const auto gather_with = [&](const Side& other, bool same) {
-    gather(BvhTraversal{cloth.bvh(), other.bvh(), same, nullptr, cloth.node_ends, other.node_ends, cloth.marks,
-                        other.marks},
-           scratch_, pairs, LeafPairs{cloth, other, same});
+    const int parts = visit_in_parts(BvhTraversal{cloth.bvh(), other.bvh(), same, nullptr, cloth.node_ends,
+                                                  other.node_ends, cloth.marks, other.marks},
+                                     scratch_, LeafPairs{cloth, other, same, wanted});
+    std::size_t found = pairs.size();
+    for (int i = 0; i < parts; ++i) found += scratch_[i].pairs.size();
+    pairs.reserve(found);
+    if (motion) gap.reserve(found);
+    for (int i = 0; i < parts; ++i) {
+      overlapping += scratch_[i].overlapping;
+      take(scratch_[i], pairs, gap);
+    }
   };
-  if (world_.self) gather_with(cloth, true);
-  for (const SearchPart& obstacle : obstacles_) gather_with(side(obstacle), false);
+  try {
+    if (world_.self) gather_with(cloth, true);
+    for (const SearchPart& obstacle : obstacles_) gather_with(side(obstacle), false);
+  } catch (const TooManyPairs&) {
+    std::vector<NodePair>().swap(pairs);
+    std::vector<double>().swap(gap);
+    throw;
+  }
   ++tally_.searches;
-  tally_.candidates += static_cast<std::int64_t>(pairs.size());
-  if (!marks.empty())
-    std::erase_if(pairs, [&](const NodePair& pair) {
-      return std::ranges::none_of(pair.nodes, [&](int node) { return marks[node] != 0; });
-    });
-  if (left_out_)
-    std::erase_if(pairs, [this](const NodePair& pair) { return left_out_->leaves_alone(world_, pair.nodes); });
+  tally_.candidates += overlapping;
+}
+
+void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+                      const std::vector<char>& marks) {
+  std::vector<double> none;
+  collect(x0, x1, radius, nullptr, pairs, none, marks);
+}
+
+void PairSearch::find_near(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+                           std::vector<double>& gap, const std::vector<char>& marks) {
+  const PairMotion motion(x0, x0, x1);
+  collect(x0, x1, radius, &motion, pairs, gap, marks);
 }
 
 double rest_distance(const ContactWorld& world, const NodePair& pair) {

@@ -1,38 +1,37 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "collision/contact/ccd.hpp"
 #include "collision/contact/contact_world.hpp"
+#include "collision/contact/node_pair.hpp"
 #include "collision/contact/search_part.hpp"
-#include "collision/geometry/distance.hpp"
 
 namespace selvedge {
 
 struct Exemption;
-
-// Two primitives that share no vertex. Of two edges of the cloth the one with the lower nodes comes first.
-struct NodePair {
-  PairKind kind;
-  std::array<int, 4> nodes;  // v, f0, f1, f2 | a0, a1, b0, b1
-  auto operator<=>(const NodePair&) const = default;
-};
-
-// The positions of a pair's nodes, in their order. x: one row a node of the world.
-std::array<Vec3, 4> corners(const NodePair&, const Points& x);
-// The closest points of a pair's two primitives (distance.hpp).
-Closest closest(PairKind, const std::array<Vec3, 4>& corners);
-inline Closest closest(const NodePair& pair, const Points& x) { return closest(pair.kind, corners(pair, x)); }
+class PairMotion;
 
 // Distance in the rest shape of a pair of one cloth; infinite for any other, and where the world has no rest shape [m].
 double rest_distance(const ContactWorld&, const NodePair&);
 
-// Numbers of searches and of pairs found.
+// Numbers of searches and of pairs whose boxes overlapped.
 struct SearchTally {
   int searches = 0;
   std::int64_t candidates = 0;
+};
+
+// What one part of a search has found.
+struct FoundPairs {
+  std::vector<NodePair> pairs;
+  std::vector<double> gap;       // at the start, of each pair; empty if nobody asked for it [m]
+  std::int64_t overlapping = 0;  // pairs whose boxes overlap
+
+  void clear() {
+    pairs.clear();
+    gap.clear();
+    overlapping = 0;
+  }
 };
 
 // Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
@@ -46,19 +45,27 @@ class PairSearch {
   // `pairs` is empty.
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
             const std::vector<char>& marks = {});
-  // From now on `find` leaves these pairs out; null: none. Keeps the pointer.
+  // The same, without the pairs that cannot come within the radius by the motion of their nodes; `gap` gets how far
+  // apart the others are at x0 [m].
+  void find_near(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
+                 std::vector<double>& gap, const std::vector<char>& marks = {});
+  // From now on searches leave these pairs out; null: none. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
   const ContactWorld& world() const { return world_; }
   const SearchTally& tally() const { return tally_; }
 
  private:
+  void prepare(const Points& x0, const Points& x1, double radius, bool ends, const std::vector<char>& marks);
   void fill(bool only_marked);
+  // `motion` null: all pairs with overlapping boxes, and no gaps.
+  void collect(const Points& x0, const Points& x1, double radius, const PairMotion* motion,
+               std::vector<NodePair>& pairs, std::vector<double>& gap, const std::vector<char>& marks);
 
   const ContactWorld& world_;
   const Exemption* left_out_ = nullptr;
   SearchPart cloth_;
   std::vector<SearchPart> obstacles_;
-  PartLists<NodePair> scratch_;
+  std::vector<FoundPairs> scratch_;
   SearchTally tally_;
 };
 

@@ -21,21 +21,6 @@ struct PathPairs {
 // not valid for any motion.
 bool update_pairs(PairSearch&, double thickness, const Points& x0, const Points& x1, PathPairs& path);
 
-// A motion x0 -> x1 relative to the positions at which the gaps of a list were measured.
-class PathMotion {
- public:
-  PathMotion(const PathPairs&, const Points& x0, const Points& x1);  // keeps a reference to the list
-  // False only if pair i stays farther apart than `distance` [m] while all nodes move straight from x0 to x1: its gap
-  // shrinks by at most the largest difference of displacements between a node of one primitive and one of the other,
-  // and on a straight motion this is largest at an end.
-  bool may_come_within(std::size_t i, double distance) const;
-
- private:
-  const PathPairs& path_;
-  Points from_, to_;  // displacements at both ends; from_ is empty where there are none
-  double rounding_;   // [m]
-};
-
 // The listed pairs that may be within `distance` [m] at x.
 std::vector<NodePair> pairs_within(const PathPairs&, const Points& x, double distance);
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "collision/contact/pair_motion.hpp"
 #include "collision/contact/resolution.hpp"
 #include "collision/geometry/stop_scope.hpp"
 
@@ -29,7 +30,7 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
                                const Separations& separation, const Points& x0, const Points& x1,
                                const ContactWorld* normals_of, std::int64_t& swept) {
   constexpr int chunk = 4096;
-  const PathMotion motion(path, x0, x1);
+  const PairMotion motion(path.start, x0, x1);
   const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<Impact>> found(chunks);
   std::vector<std::int64_t> tested(chunks, 0);
@@ -41,7 +42,9 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
       if (only && any([&](int n) { return (*only)[n] == 0; })) continue;
       if (!moved.empty() && !any([&](int n) { return moved[n] != 0; })) continue;
-      if (!motion.may_come_within(i, separation.most) || !any([&](int n) { return inverse_mass[n] > 0; })) continue;
+      if (!motion.may_come_within(pair, path.gap[i], separation.most) ||
+          !any([&](int n) { return inverse_mass[n] > 0; }))
+        continue;
       ++tested[c];
       auto impact = find_impact(pair, x0, x1, separation.most, normals_of);
       if (!impact) continue;

@@ -3,6 +3,22 @@
 #include <algorithm>
 
 namespace selvedge {
+namespace {
+
+// The boxes of vertices, edges and triangles from those of the vertices.
+struct BoxesOf {
+  const Surface& surface;
+  const std::vector<Box>& boxes;
+
+  Box vertex(int v) const { return boxes[v]; }
+  Box edge(int e) const { return hull(boxes[surface.edges(e, 0)], boxes[surface.edges(e, 1)]); }
+  Box triangle(int t) const {
+    const auto corners = surface.triangles.row(t);
+    return hull(boxes[corners[0]], boxes[corners[1]], boxes[corners[2]]);
+  }
+};
+
+}  // namespace
 
 void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, const std::vector<int>& owner) {
   groups.clear();
@@ -21,7 +37,6 @@ void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, con
       }
     begin.push_back(static_cast<int>(groups.size()));
   }
-  ends.resize(groups.size());
 }
 
 void SearchPart::move(const Points& x0, const Points& x1, double radius, bool ends) {
@@ -32,54 +47,45 @@ void SearchPart::move(const Points& x0, const Points& x1, double radius, bool en
   ends_ = ends;
   from_ = from;
   to_ = to;
-  vertex_boxes(from_, to_, radius / 2, boxes_.vertices);
-  triangle_boxes(*surface, boxes_.vertices, boxes_.triangles);
-  if (update(tree, boxes_.triangles)) {
+  vertex_boxes(from_, to_, radius / 2, vertex_boxes_);
+  triangle_boxes(*surface, vertex_boxes_, triangle_boxes_);
+  if (update(tree, triangle_boxes_)) {
     vertices.share_out(tree.bvh, surface->triangles, surface->vertex_owner);
     edges.share_out(tree.bvh, surface->triangle_edges, surface->edge_owner);
-    face_ends.resize(tree.bvh.leaves.size());
-  }
-  for (Boxes* boxes : {&boxes_, &start_, &end_}) {
-    boxes->edges.resize(surface->edges.rows());
-    boxes->triangles.resize(surface->triangles.rows());
   }
   filled_.assign(tree.bvh.leaves.size(), 0);
   node_ends.clear();
   if (!ends) return;
-  vertex_boxes(from_, from_, radius / 2, start_.vertices);
-  vertex_boxes(to_, to_, radius / 2, end_.vertices);
-  std::ranges::fill(face_ends.bounds, EndBoxes{empty_box, empty_box});
-}
-
-void SearchPart::set_edge_boxes(int leaf, Boxes& boxes) const {
-  for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g)
-    for (const int e : edges.groups[g].item)
-      if (e >= 0) boxes.edges[e] = hull(boxes.vertices[surface->edges(e, 0)], boxes.vertices[surface->edges(e, 1)]);
+  vertex_boxes(from_, from_, radius / 2, start_);
+  vertex_boxes(to_, to_, radius / 2, end_);
+  vertices.ends.resize(vertices.groups.size());
+  edges.ends.resize(edges.groups.size());
+  face_ends.resize(tree.bvh.leaves.size());
+  leaf_ends.assign(tree.bvh.leaves.size(), {empty_box, empty_box});
 }
 
 void SearchPart::fill_leaf(int leaf) {
-  set_edge_boxes(leaf, boxes_);
+  const BoxesOf all{*surface, vertex_boxes_};
   for (int g = vertices.begin[leaf]; g < vertices.begin[leaf + 1]; ++g)
-    set_leaf_boxes(vertices.groups[g], boxes_.vertices);
-  for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g) set_leaf_boxes(edges.groups[g], boxes_.edges);
+    set_leaf_boxes(vertices.groups[g], [&](int v) { return all.vertex(v); });
+  for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g)
+    set_leaf_boxes(edges.groups[g], [&](int e) { return all.edge(e); });
   if (ends_) fill_ends(leaf);
   filled_[leaf] = 1;
 }
 
 void SearchPart::fill_ends(int leaf) {
-  for (Boxes* at : {&start_, &end_}) {
-    for (const int t : tree.bvh.leaves[leaf].item) {
-      if (t < 0) continue;
-      const auto corners = surface->triangles.row(t);
-      at->triangles[t] = hull(at->vertices[corners[0]], at->vertices[corners[1]], at->vertices[corners[2]]);
-    }
-    set_edge_boxes(leaf, *at);
-  }
-  set_end_boxes(tree.bvh.leaves[leaf], start_.triangles, end_.triangles, leaf, face_ends);
+  const BoxesOf start{*surface, start_}, end{*surface, end_};
+  leaf_ends[leaf] = set_end_boxes(
+      tree.bvh.leaves[leaf], [&](int t) { return start.triangle(t); }, [&](int t) { return end.triangle(t); }, leaf,
+      face_ends);
   for (int g = vertices.begin[leaf]; g < vertices.begin[leaf + 1]; ++g)
-    set_end_boxes(vertices.groups[g], start_.vertices, end_.vertices, g, vertices.ends);
+    set_end_boxes(
+        vertices.groups[g], [&](int v) { return start.vertex(v); }, [&](int v) { return end.vertex(v); }, g,
+        vertices.ends);
   for (int g = edges.begin[leaf]; g < edges.begin[leaf + 1]; ++g)
-    set_end_boxes(edges.groups[g], start_.edges, end_.edges, g, edges.ends);
+    set_end_boxes(
+        edges.groups[g], [&](int e) { return start.edge(e); }, [&](int e) { return end.edge(e); }, g, edges.ends);
 }
 
 void SearchPart::fill(const std::function<bool(int node)>& wanted) {
@@ -93,7 +99,7 @@ void SearchPart::fill(const std::function<bool(int node)>& wanted) {
   const int count = static_cast<int>(leaves.size());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < count; ++i) fill_leaf(leaves[i]);
-  if (ends_ && (count > 0 || node_ends.empty())) set_end_boxes(tree.bvh, face_ends, node_ends);
+  if (ends_ && (count > 0 || node_ends.empty())) set_end_boxes(tree.bvh, leaf_ends, node_ends);
 }
 
 void SearchPart::mark(const std::vector<char>& nodes) {

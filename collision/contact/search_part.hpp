@@ -37,21 +37,19 @@ class SearchPart {
   KeptBvh tree;
   PrimitiveGroups vertices, edges;
   EndLeaves face_ends;
+  std::vector<EndBoxes> leaf_ends;  // round all faces of each leaf
   std::vector<EndBoxes> node_ends;
   std::vector<char> marks;
 
  private:
-  struct Boxes {
-    std::vector<Box> vertices, edges, triangles;
-  };
   void fill_leaf(int leaf);
   void fill_ends(int leaf);
-  void set_edge_boxes(int leaf, Boxes&) const;
 
   Points from_, to_;  // the motion of the boxes
   double radius_ = -1;
   bool ends_ = false;
-  Boxes boxes_, start_, end_;
+  std::vector<Box> vertex_boxes_, triangle_boxes_;  // round the motion
+  std::vector<Box> start_, end_;                    // of the vertices, at its ends
   std::vector<char> filled_;  // by leaf
 };
 

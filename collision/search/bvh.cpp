@@ -97,27 +97,12 @@ void build_below(Bvh& tree, const Task& root) {
 void refit_node(Bvh& tree, int index, std::span<const Box> items) {
   Bvh::Node& node = tree.nodes[index];
   if (node.child < 0)
-    node.box = set_leaf_boxes(tree.leaves[~node.child], items);
+    node.box = set_leaf_boxes(tree.leaves[~node.child], [&](int item) { return items[item]; });
   else
     node.box = join(tree.nodes[node.child].box, tree.nodes[node.child + 1].box);
 }
 
 }  // namespace
-
-Box set_leaf_boxes(Bvh::Leaf& leaf, std::span<const Box> items) {
-  constexpr float none = std::numeric_limits<float>::quiet_NaN();
-  Box bounds = empty_box;
-  for (int i = 0; i < Bvh::leaf_size; ++i) {
-    const bool used = leaf.item[i] >= 0;
-    const Box& box = used ? items[leaf.item[i]] : empty_box;
-    for (int k = 0; k < 3; ++k) {
-      leaf.lo[k][i / 4][i % 4] = used ? box.lo[k] : none;
-      leaf.hi[k][i / 4][i % 4] = used ? box.hi[k] : none;
-    }
-    bounds = join(bounds, box);
-  }
-  return bounds;
-}
 
 void vertex_boxes(const Points& x0, const Points& x1, double radius, std::vector<Box>& boxes) {
   const int count = static_cast<int>(x0.rows());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -43,8 +44,9 @@ struct Bvh {
 
 Bvh build_bvh(std::span<const Box> items);     // items may be empty
 void refit(Bvh&, std::span<const Box> items);  // same items, moved
-// Copies the boxes of a leaf's items into it and returns their common box.
-Box set_leaf_boxes(Bvh::Leaf&, std::span<const Box> items);
+// Writes the boxes of a leaf's items into it and returns their common box. item_box(i): the box of item i.
+template <class ItemBox>
+Box set_leaf_boxes(Bvh::Leaf&, const ItemBox& item_box);
 // Total surface area of the boxes over that of the root: rises as a refitted tree degrades.
 double bvh_cost(const Bvh&);
 
@@ -62,5 +64,21 @@ bool update(KeptBvh&, std::span<const Box> items);
 // lists each unordered pair once, i < j. `pairs` is overwritten.
 void self_pairs(const Bvh&, std::vector<std::pair<int, int>>& pairs);
 void cross_pairs(const Bvh& a, const Bvh& b, std::vector<std::pair<int, int>>& pairs);
+
+template <class ItemBox>
+Box set_leaf_boxes(Bvh::Leaf& leaf, const ItemBox& item_box) {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  Box bounds = empty_box;
+  for (int i = 0; i < Bvh::leaf_size; ++i) {
+    const bool used = leaf.item[i] >= 0;
+    const Box box = used ? item_box(leaf.item[i]) : empty_box;
+    for (int k = 0; k < 3; ++k) {
+      leaf.lo[k][i / 4][i % 4] = used ? box.lo[k] : none;
+      leaf.hi[k][i / 4][i % 4] = used ? box.hi[k] : none;
+    }
+    bounds = join(bounds, box);
+  }
+  return bounds;
+}
 
 }  // namespace selvedge

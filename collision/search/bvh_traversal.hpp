@@ -139,9 +139,8 @@ using PartLists = std::vector<std::vector<Item>>;
 
 // Visits all pairs of leaves below `w`. Takes from the budget the pairs that the visits report, and eight more for each
 // visit. Returns false if it ended early because the budget was spent.
-template <class Item, class Visit>
-bool visit_below(const BvhTraversal& traversal, NodeWork w, std::vector<Item>& list, PairBudget& budget,
-                 Visit&& visit) {
+template <class List, class Visit>
+bool visit_below(const BvhTraversal& traversal, NodeWork w, List& list, PairBudget& budget, Visit&& visit) {
   constexpr std::int64_t reported_at_once = 1 << 14;
   std::vector<NodeWork> stack{w};
   std::int64_t unreported = 0;  // not yet reported to the budget
@@ -159,12 +158,12 @@ bool visit_below(const BvhTraversal& traversal, NodeWork w, std::vector<Item>& l
 }
 
 // Calls visit(w, list) for every pair of leaves whose boxes overlap (and every leaf with itself, within one tree), on
-// all threads. A visit appends to its list and returns how many pairs it has looked at. The lists are appended to `out`
-// in an order that depends on the trees alone. Throws TooManyPairs (pair_budget.hpp), with empty lists and `out`, where
-// the visits have looked at too many.
-template <class Item, class Visit>
-void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<Item>& out, Visit&& visit) {
-  if (traversal.first.item_count == 0 || traversal.second.item_count == 0) return;
+// all threads. A visit appends to its list, which has clear(), and returns how many pairs it has looked at. Returns how
+// many of the lists it has used: what is in them and in which order depends on the trees alone. Throws TooManyPairs
+// (pair_budget.hpp), without lists, where the visits have looked at too many.
+template <class List, class Visit>
+int visit_in_parts(const BvhTraversal& traversal, std::vector<List>& parts, Visit&& visit) {
+  if (traversal.first.item_count == 0 || traversal.second.item_count == 0) return 0;
   const std::vector<NodeWork> front = traversal.frontier();
   const int count = static_cast<int>(front.size());
   if (parts.size() < front.size()) parts.resize(front.size());
@@ -175,10 +174,20 @@ void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<I
     parts[i].clear();
     visit_below(traversal, front[i], parts[i], budget, visit);
   });
-  if (budget.exceeded()) {
-    PartLists<Item>().swap(parts);
+  if (budget.exceeded()) std::vector<List>().swap(parts);
+  budget.check();
+  return count;
+}
+
+// The same with lists that are vectors, which are appended to `out`; `out` is empty where it throws.
+template <class Item, class Visit>
+void gather(const BvhTraversal& traversal, PartLists<Item>& parts, std::vector<Item>& out, Visit&& visit) {
+  int count = 0;
+  try {
+    count = visit_in_parts(traversal, parts, visit);
+  } catch (const TooManyPairs&) {
     std::vector<Item>().swap(out);
-    budget.check();
+    throw;
   }
   std::vector<std::size_t> begin(count + 1, out.size());
   for (int i = 0; i < count; ++i) begin[i + 1] = begin[i] + parts[i].size();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -10,16 +11,21 @@ namespace selvedge {
 // The boxes of leaves, or of groups of items in the form of leaves, at both ends of a motion.
 struct EndLeaves {
   std::vector<Bvh::Leaf> start, end;
-  std::vector<EndBoxes> bounds;  // of each leaf
 
   void resize(std::size_t leaves);
 };
 
-// Fills in the boxes of one leaf, at index `place` of the EndLeaves. `start` and `end` are the boxes of all items.
-void set_end_boxes(const Bvh::Leaf&, std::span<const Box> start, std::span<const Box> end, int place, EndLeaves&);
+// The boxes of a tree's nodes, from those round its leaves.
+void set_end_boxes(const Bvh&, std::span<const EndBoxes> leaves, std::vector<EndBoxes>& nodes);
 
-// The boxes of a tree's nodes, from those of its leaves.
-void set_end_boxes(const Bvh&, const EndLeaves&, std::vector<EndBoxes>& nodes);
+// Fills in the boxes of one leaf, at index `place` of the EndLeaves, and returns those round all its items.
+// start(item) and end(item): the boxes of an item.
+template <class StartBox, class EndBox>
+EndBoxes set_end_boxes(const Bvh::Leaf& leaf, const StartBox& start, const EndBox& end, int place, EndLeaves& ends) {
+  std::ranges::copy(leaf.item, ends.start[place].item);
+  std::ranges::copy(leaf.item, ends.end[place].item);
+  return {set_leaf_boxes(ends.start[place], start), set_leaf_boxes(ends.end[place], end)};
+}
 
 // One bit for each item of the leaf: 1 where it is apart in order (bvh_traversal.hpp) from the boxes `other`.
 [[gnu::always_inline]] inline unsigned apart_in_order(const Bvh::Leaf& start, const Bvh::Leaf& end,

@@ -21,6 +21,9 @@ PairPattern make_pair_pattern(int rows, std::span<const int> element_begin, std:
   std::vector<int> ends;
   for (const auto& pair : pattern.pairs) ends.insert(ends.end(), pair.begin(), pair.end());
   IndexLists by = indices_by_value(ends, rows);
+  pattern.pairs.shrink_to_fit();
+  pattern.column.reserve(by.item.size());
+  pattern.pair.reserve(by.item.size());
   // As pairs are ascending, so are the columns of a row.
   for (const int i : by.item) {
     pattern.column.push_back(ends[i ^ 1]);

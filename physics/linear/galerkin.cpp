@@ -19,20 +19,32 @@ std::vector<int> lists_of_items(const std::vector<int>& begin) {
 }
 
 // Collects the terms of coarse rows, one row after the other, on the diagonal and right of it, and assigns slots to
-// columns.
+// columns. `constant` may be null.
 class RowCollector {
  public:
-  explicit RowCollector(int columns) : slot_(columns, -1) { product_.begin = {0}; }
-  void start(int row) { row_ = row; }
+  RowCollector(int columns, ConstantEntries* constant) : constant_(constant), slot_(columns, -1) {
+    product_.begin = {0};
+    if (constant) constant->diagonal.clear();
+  }
+  void start(int row) {
+    row_ = row;
+    if (constant_) constant_->diagonal.push_back(0);
+  }
   void add(int source, int column, double weight) {
     if (weight == 0 || column < row_) return;
-    product_.term.push_back({source, column == row_ ? -1 : slot(column), static_cast<float>(weight)});
+    const int target = column == row_ ? -1 : slot(column);
+    const float rounded = static_cast<float>(weight);
+    if (constant_ && source >= 0 && !std::isnan(constant_->value[source]))
+      (target < 0 ? constant_->diagonal.back() : slot_sum_[target]) +=
+          static_cast<double>(rounded) * constant_->value[source];
+    else
+      row_terms_.push_back({{source, rounded}, target});
   }
   void finish() {
     for (std::size_t k = begin_.back(); k < column_.size(); ++k) slot_[column_[k]] = -1;
     sort_by_target();
     begin_.push_back(static_cast<int>(column_.size()));
-    product_.begin.push_back(static_cast<int>(product_.term.size()));
+    product_.begin.push_back(static_cast<int>(product_.target.size()));
   }
   Product with_mirrored(RowPattern& whole);
 
@@ -41,28 +53,42 @@ class RowCollector {
     if (slot_[column] < 0) {
       slot_[column] = static_cast<int>(column_.size());
       column_.push_back(column);
+      if (constant_) slot_sum_.push_back(0);
     }
     return slot_[column];
   }
-  // Sorts the terms of the last row by target, the diagonal first; terms of one target keep their order.
+  // Appends the terms of the last row by target, the diagonal first; terms of one target keep their order.
   void sort_by_target();
+
+  struct RowTerm {
+    ProductTerm term;
+    int target;  // a slot, or -1
+  };
+  ConstantEntries* constant_;
   int row_ = 0;
   std::vector<int> slot_, begin_{0}, column_;  // slots are positions in column_
-  std::vector<int> next_;                      // of each target of a row: the index of its next term
-  std::vector<ProductTerm> sorted_;
+  std::vector<double> slot_sum_;               // of constant entries
+  std::vector<RowTerm> row_terms_;
+  std::vector<int> next_;  // of each target of a row: the index of its next term
   Product product_;
 };
 
 void RowCollector::sort_by_target() {
-  const auto terms = std::span(product_.term).subspan(product_.begin.back());
-  const int first = begin_.back() - 1;  // the diagonal comes before the row's slots
-  const auto place = [&](const ProductTerm& term) { return term.target < 0 ? 0 : term.target - first; };
-  next_.assign(column_.size() - first + 1, 0);
-  for (const ProductTerm& term : terms) ++next_[place(term) + 1];
-  std::partial_sum(next_.begin(), next_.end(), next_.begin());
-  sorted_.resize(terms.size());
-  for (const ProductTerm& term : terms) sorted_[next_[place(term)]++] = term;
-  std::ranges::copy(sorted_, terms.begin());
+  const int before = begin_.back() - 1;  // the diagonal comes before the row's slots
+  const int old = static_cast<int>(product_.term.size());
+  const auto place = [&](const RowTerm& t) { return t.target < 0 ? 0 : t.target - before; };
+  next_.assign(column_.size() - before + 1, 0);
+  for (const RowTerm& t : row_terms_) ++next_[place(t) + 1];
+  for (std::size_t k = 0; k + 1 < next_.size(); ++k) {
+    if (next_[k + 1] > 0) {
+      product_.target.push_back(k == 0 ? -1 : static_cast<int>(k) + before);
+      product_.first.push_back(old + next_[k]);
+    }
+    next_[k + 1] += next_[k];
+  }
+  product_.term.resize(old + row_terms_.size());
+  for (const RowTerm& t : row_terms_) product_.term[old + next_[place(t)]++] = t.term;
+  row_terms_.clear();
 }
 
 // The product of the collected terms and their mirror images in one pattern: each row's left part first.
@@ -86,8 +112,16 @@ Product RowCollector::with_mirrored(RowPattern& whole) {
     whole.end_row(a);
     product_.mirror.resize(whole.column.size(), -1);
   }
-  for (ProductTerm& term : product_.term)
-    if (term.target >= 0) term.target = entry[term.target];
+  for (int& target : product_.target)
+    if (target >= 0) target = entry[target];
+  product_.first.push_back(static_cast<int>(product_.term.size()));
+  if (constant_) {
+    constant_->sum.assign(whole.column.size(), 0);
+    for (std::size_t k = 0; k < entry.size(); ++k) constant_->sum[entry[k]] = slot_sum_[k];
+  }
+  for (std::vector<int>* list : {&product_.target, &product_.first, &product_.mirror, &whole.column})
+    list->shrink_to_fit();
+  product_.term.shrink_to_fit();
   return std::move(product_);
 }
 
@@ -157,8 +191,8 @@ Restriction transpose(const Prolongation& p) {
 //   sum_i P_ia [ D_i (s_i u_a + sum_b P_ib (u_b - u_a)) + sum_j B_ij ((s_j - s_i) u_a + sum_b (P_jb - P_ib) (u_b -
 //   u_a)) ].
 Product make_product(const RowPattern& fine, bool diagonal, const Prolongation& p, const Restriction& restriction,
-                     RowPattern& coarse) {
-  RowCollector rows(p.coarse_count());
+                     RowPattern& coarse, ConstantEntries* constant) {
+  RowCollector rows(p.coarse_count(), constant);
   std::vector<double> sum(p.fine_count());
   for (int i = 0; i < p.fine_count(); ++i) sum[i] = weight_sum(p, i);
   for (int a = 0; a < p.coarse_count(); ++a) {
@@ -189,7 +223,7 @@ Product make_product(std::span<const ContactBlock> contacts, const Prolongation&
   const CoarseContacts all = interpolate(contacts, p);
   const IndexLists places = indices_by_value(all.node, p.coarse_count());
   const std::vector<int> contact = lists_of_items(all.begin);
-  RowCollector rows(p.coarse_count());
+  RowCollector rows(p.coarse_count(), nullptr);
   for (int a = 0; a < p.coarse_count(); ++a) {
     rows.start(a);
     for (const int place : places.of(a)) {
@@ -207,13 +241,13 @@ Product make_product(std::span<const ContactBlock> contacts, const Prolongation&
 void accumulate(const Product& product, const BlockPair<float>* source, const BlockColumns<float>* source_diagonal,
                 BlockPair<float>* target, BlockColumns<float>* target_diagonal, int begin, int end) {
   for (int a = begin; a < end; ++a)
-    for (int t = product.begin[a], end_of_row = product.begin[a + 1]; t < end_of_row;) {
-      const int entry = product.term[t].target;
+    for (int target_of_row = product.begin[a]; target_of_row < product.begin[a + 1]; ++target_of_row) {
+      const int entry = product.target[target_of_row];
       const auto to = [&](int k) -> Quad<float>& {
         return entry < 0 ? target_diagonal[a].column[k] : column_of(target, entry, k);
       };
       auto x = to(0).lanes, y = to(1).lanes, z = to(2).lanes;
-      for (; t < end_of_row && product.term[t].target == entry; ++t) {
+      for (int t = product.first[target_of_row]; t < product.first[target_of_row + 1]; ++t) {
         const ProductTerm term = product.term[t];
         const auto add = [&](const auto& from) {
           x += from(0).lanes * term.weight;

@@ -21,23 +21,31 @@ struct Restriction {
 };
 Restriction transpose(const Prolongation&);
 
-// Adds weight times a source block to a target block. Terms are sorted by rows of the target. Targets are on the
-// diagonal or right of it; `reflect` fills in the rest.
+// Weight times a source block, which is added to a target block.
 struct ProductTerm {
   int source;  // an entry of the fine pattern, or ~i: the diagonal of row i
-  int target;  // an entry of the coarse pattern, or -1: the diagonal of the row
   float weight;
 };
+// The targets of coarse row a are begin[a] .. begin[a + 1], on the diagonal and right of it; `reflect` fills in the
+// rest. Target k is the sum of the terms first[k] .. first[k + 1].
 struct Product {
   std::vector<int> begin;
+  std::vector<int> target;  // an entry of the coarse pattern, or -1: the diagonal of the row
+  std::vector<int> first;
   std::vector<ProductTerm> term;
   std::vector<int> mirror;  // for an entry of the coarse pattern left of the diagonal, the entry of which it is
                             // the transpose; for others -1
 };
 
-// The product for matrices with this pattern; `diagonal`: they have a diagonal.
-Product make_product(const RowPattern& fine, bool diagonal, const Prolongation&, const Restriction&,
-                     RowPattern& coarse);
+// Entries whose blocks are a number times I3 that never changes. Their part of a product is summed when it is made.
+struct ConstantEntries {
+  std::vector<double> value;          // of each entry of the fine pattern; NaN where it is not constant
+  std::vector<double> sum, diagonal;  // of the product: by entry of the coarse pattern, 0 left of the diagonal; by row
+};
+
+// The product for matrices with this pattern; `diagonal`: they have a diagonal. `constant` may be null.
+Product make_product(const RowPattern& fine, bool diagonal, const Prolongation&, const Restriction&, RowPattern& coarse,
+                     ConstantEntries* constant = nullptr);
 
 // The product for contacts; the sources are their 3 x 3 factors.
 Product make_product(std::span<const ContactBlock>, const Prolongation&, RowPattern& coarse);

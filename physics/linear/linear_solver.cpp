@@ -81,7 +81,7 @@ struct LinearSystemSolver::Impl {
   Cholesky cholesky;
   LowerTriangle lower;
   std::vector<double> packed_right, packed_solution;
-  Vertices vertices;
+  Vertices vertices;  // for multigrid; empty once that is made
   std::vector<char> free;
   std::unique_ptr<Multigrid> multigrid;  // made when first needed
   int coarse_builds = 0;                 // so far
@@ -151,7 +151,10 @@ LinearReport LinearSystemSolver::Impl::solve_iterative(Iterative<Real>& method, 
 double LinearSystemSolver::Impl::prepare_single(const LinearSystem& system, std::span<const Mat3> diagonal) {
   single.matrix.fill(system);
   if (chosen == LinearSolver::multigrid) {
-    if (!multigrid) multigrid = std::make_unique<Multigrid>(vertices, free);
+    if (!multigrid) {
+      multigrid = std::make_unique<Multigrid>(vertices, free);  // a stop may end this
+      vertices = {};
+    }
     const bool kept = fresh_iterations >= 0;
     if (kept) multigrid->fill_finest(system, diagonal, single.matrix);
     coarse_builds += !kept;

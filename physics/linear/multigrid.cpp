@@ -1,6 +1,7 @@
 #include "physics/linear/multigrid.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -63,7 +64,8 @@ struct Level {
   Blocks diagonal;
   // Data of the smoother.
   Blocks inverse;
-  Quads<float> right, x, step, product_of_step, residual;
+  Quads<float> step, product_of_step, residual;
+  Quads<float> right, x;  // of the level's system; empty on the finest, whose caller has them
 
   LevelView view() const {
     return {diagonal.data(),
@@ -141,52 +143,49 @@ Multigrid::Multigrid(const Vertices& vertices, std::span<const char> free) : imp
     here_free.assign(here.graph.vertex_count(), true);
     level.prolongation = std::move(prolongation);
   }
-  for (Level& level : impl_->levels)
-    for (Quads<float>* vector : {&level.right, &level.x, &level.step, &level.product_of_step, &level.residual})
+  for (Level& level : impl_->levels) {
+    const bool finest = &level == &impl_->levels.front();
+    for (Quads<float>* vector : {&level.right, &level.x}) vector->assign(finest ? 0 : level.rows, Quad<float>{});
+    for (Quads<float>* vector : {&level.step, &level.product_of_step, &level.residual})
       vector->assign(level.rows, Quad<float>{});
+  }
 }
 Multigrid::~Multigrid() = default;
 
-// The first product takes blocks and flat entries outside of blocks together; the latter are constant scalars, whose
-// product is computed here.
+// The first product takes blocks and flat entries outside of blocks together; the latter are constants.
 void Multigrid::Impl::make_patterns(const LinearSystem& system) {
   patterns = true;
   if (levels.size() < 2) return;
   const RowPattern &near = fine->pattern(), &beyond = fine->far();
-  const int blocks = static_cast<int>(near.column.size());
+  const std::size_t count = near.column.size() + beyond.column.size();
   RowPattern joint{{0}, {}};
-  std::vector<int> entry;  // of blocks; after these come flat values
+  ConstantEntries constant;
+  std::vector<int> entry;  // of `near`; -1 for those of `beyond`
+  joint.begin.reserve(near.begin.size());
+  joint.column.reserve(count);
+  constant.value.reserve(count);
+  entry.reserve(count);
+  const auto add = [&](int column, int near_entry, double value) {
+    joint.column.push_back(column);
+    entry.push_back(near_entry);
+    constant.value.push_back(value);
+  };
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < near.rows(); ++i) {
-    for (int k = near.begin[i]; k < near.begin[i + 1]; ++k) {
-      joint.column.push_back(near.column[k]);
-      entry.push_back(k);
-    }
+    for (int k = near.begin[i]; k < near.begin[i + 1]; ++k) add(near.column[k], k, none);
     for (int k = beyond.begin[i]; k < beyond.begin[i + 1]; ++k) {
-      joint.column.push_back(beyond.column[k]);
-      entry.push_back(blocks + fine->far_place()[k]);
+      const int place = fine->far_place()[k];  // -1: an entry that makes the row's number even, and has no terms
+      add(beyond.column[k], -1, place < 0 ? none : system.flat.valuePtr()[place]);
     }
     joint.end_row(i);
   }
   Level& second = levels[1];
-  Product both = make_product(joint, true, levels[0].prolongation, levels[0].restriction, second.pattern);
-  std::vector<double> sums(second.pattern.column.size(), 0.0), diagonal_sums(second.rows, 0.0);
-  second.product.begin = {0};
-  for (int a = 0; a < second.rows; ++a) {
-    for (int k = both.begin[a]; k < both.begin[a + 1]; ++k) {
-      ProductTerm term = both.term[k];
-      if (term.source >= 0) term.source = entry[term.source];
-      if (term.source < blocks)
-        second.product.term.push_back(term);
-      else
-        (term.target < 0 ? diagonal_sums[a] : sums[term.target]) +=
-            static_cast<double>(term.weight) * system.flat.valuePtr()[term.source - blocks];
-    }
-    second.product.begin.push_back(static_cast<int>(second.product.term.size()));
-  }
-  second.product.mirror = std::move(both.mirror);
+  second.product = make_product(joint, true, levels[0].prolongation, levels[0].restriction, second.pattern, &constant);
+  for (ProductTerm& term : second.product.term)
+    if (term.source >= 0) term.source = entry[term.source];
   if (!beyond.column.empty()) {
-    far.assign(sums.begin(), sums.end());
-    far_diagonal.assign(diagonal_sums.begin(), diagonal_sums.end());
+    far.assign(constant.sum.begin(), constant.sum.end());
+    far_diagonal.assign(constant.diagonal.begin(), constant.diagonal.end());
   }
   for (std::size_t l = 2; l < levels.size(); ++l)
     levels[l].product = make_product(levels[l - 1].pattern, true, levels[l - 1].prolongation, levels[l - 1].restriction,

@@ -71,6 +71,8 @@ void PcgMatrix<Real>::lay_out(const LinearSystem& system) {
     far_.end_row(i);
     far_place_.resize(far_.column.size(), -1);
   }
+  for (std::vector<int>* list : {&near_.column, &near_entry_, &near_place_, &far_.column, &far_place_})
+    list->shrink_to_fit();
   blocks_.assign(near_.column.size() / 2, {});
   diagonal_.resize(rows());
   far_value_.assign(far_.column.size(), Real(0));

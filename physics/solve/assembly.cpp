@@ -29,22 +29,45 @@ void make_gather_lists(Elastic& elastic, int vertices) {
     for (int i = elastic.element_begin[e]; i < elastic.element_begin[e + 1]; ++i)
       for (int j = i + 1; j < elastic.element_begin[e + 1]; ++j)
         pair_of_slot.push_back(find_pair(elastic.pattern, elastic.element_nodes[i], elastic.element_nodes[j]));
-  elastic.pair_slots = indices_by_value(pair_of_slot, static_cast<int>(elastic.pattern.pairs.size()));
+  const int pairs = static_cast<int>(elastic.pattern.pairs.size());
+  std::vector<int> pair_of_place;
+  elastic.pair_place.reserve(pair_of_slot.size());
+  std::vector<char> met(pairs, false);
+  for (const int pair : pair_of_slot) {
+    elastic.pair_place.push_back(met[pair] ? static_cast<int>(pair_of_place.size()) : ~pair);
+    if (met[pair]) pair_of_place.push_back(pair);
+    met[pair] = true;
+  }
+  elastic.further = indices_by_value(pair_of_place, pairs);
 }
 
+// Where elements write their results. `hessian` null: no pair blocks are wanted.
+struct Slots {
+  const Elastic& elastic;
+  bool forces;
+  PairBlocks* hessian;
+  AssemblyScratch& scratch;
+
+  Mat3& pair(int slot) const {
+    const int place = elastic.pair_place[slot];
+    return place < 0 ? (*hessian)[~place] : scratch.pairs[place];
+  }
+};
+
 template <class Gradient, class Hessian>
-void store(const Elastic& elastic, int e, const Gradient& gradient, const Hessian& hessian, double weight, bool forces,
-           bool pairs, AssemblyScratch& scratch) {
+void store(const Elastic& elastic, int e, const Gradient& gradient, const Hessian& hessian, double weight,
+           const Slots& slots) {
   const int first = elastic.element_begin[e], count = elastic.element_begin[e + 1] - first;
-  if (forces)
-    for (int i = 0; i < count; ++i) scratch.forces.row(first + i) = gradient.template segment<3>(3 * i).transpose();
-  if (!pairs) return;
+  if (slots.forces)
+    for (int i = 0; i < count; ++i)
+      slots.scratch.forces.row(first + i) = gradient.template segment<3>(3 * i).transpose();
+  if (!slots.hessian) return;
   int slot = elastic.pair_begin[e];
   for (int i = 0; i < count; ++i)
     for (int j = i + 1; j < count; ++j, ++slot) {
       const bool ascending = elastic.element_nodes[first + i] < elastic.element_nodes[first + j];
       const int low = ascending ? i : j, high = ascending ? j : i;
-      scratch.pairs[slot] = weight * hessian.template block<3, 3>(3 * low, 3 * high);
+      slots.pair(slot) = weight * hessian.template block<3, 3>(3 * low, 3 * high);
     }
 }
 
@@ -55,50 +78,50 @@ double weight_of(const Elastic& elastic, int e, HessianForm form) {
 // The pair blocks of the element in lane l.
 template <std::size_t count, class Lanes>
 void store_lane(const Elastic& elastic, int e, const std::array<int, count>& nodes, const Lanes& lanes, int l,
-                double weight, AssemblyScratch& scratch) {
+                double weight, const Slots& slots) {
   int pair = 0;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count; ++j, ++pair) {
-      Mat3& block = scratch.pairs[elastic.pair_begin[e] + pair];
+      Mat3& block = slots.pair(elastic.pair_begin[e] + pair);
       block = weight * block_of(lanes, pair, l);
       if (nodes[i] > nodes[j]) block.transposeInPlace();
     }
 }
 
-void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
-                              HessianForm form, AssemblyScratch& scratch) {
+void derivatives_of_membranes(const Elastic& elastic, const Points& x, int begin, int end, HessianForm form,
+                              const Slots& slots) {
   MembraneLanes lanes;
   for (int first = begin; first < end; first += lanes.count) {
     std::span<const MembraneElement> elements(elastic.membrane.data() + first, end - first);
     elements = elements.first(together(elastic.materials, elements));
-    membrane_derivatives(elastic.materials, elements, x, pairs, form != HessianForm::exact, lanes);
+    membrane_derivatives(elastic.materials, elements, x, slots.hessian, form != HessianForm::exact, lanes);
     for (int l = 0; l < lanes.count; ++l) {
       const int e = first + l, slot = elastic.element_begin[e];
       const auto corner = [&](int k) {
         return Vec3(lanes.force[3 * k][l], lanes.force[3 * k + 1][l], lanes.force[3 * k + 2][l]);
       };
-      if (forces) {
-        scratch.forces.row(slot) = -(corner(0) + corner(1)).transpose();
-        for (int k = 0; k < 2; ++k) scratch.forces.row(slot + 1 + k) = corner(k).transpose();
+      if (slots.forces) {
+        slots.scratch.forces.row(slot) = -(corner(0) + corner(1)).transpose();
+        for (int k = 0; k < 2; ++k) slots.scratch.forces.row(slot + 1 + k) = corner(k).transpose();
       }
-      if (pairs) store_lane(elastic, e, elements[l].nodes, lanes, l, weight_of(elastic, e, form), scratch);
+      if (slots.hessian) store_lane(elastic, e, elements[l].nodes, lanes, l, weight_of(elastic, e, form), slots);
     }
   }
 }
 
-void derivatives_of_hinges(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
-                           HessianForm form, AssemblyScratch& scratch) {
+void derivatives_of_hinges(const Elastic& elastic, const Points& x, int begin, int end, HessianForm form,
+                           const Slots& slots) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   HingeLanes lanes;
   for (int first = begin; first < end; first += lanes.count) {
     const std::span<const Hinge> hinges(elastic.hinges.data() + (first - hinges_begin), end - first);
     hinge_energies(hinges, x, true, lanes);
-    if (pairs) hinge_hessians(form != HessianForm::exact, lanes);
+    if (slots.hessian) hinge_hessians(form != HessianForm::exact, lanes);
     for (int l = 0; l < lanes.count; ++l) {
       const int e = first + l, slot = elastic.element_begin[e];
-      if (forces)
-        for (int k = 0; k < 12; ++k) scratch.forces(slot + k / 3, k % 3) = lanes.force[k][l];
-      if (pairs) store_lane(elastic, e, hinges[l].nodes, lanes, l, weight_of(elastic, e, form), scratch);
+      if (slots.forces)
+        for (int k = 0; k < 12; ++k) slots.scratch.forces(slot + k / 3, k % 3) = lanes.force[k][l];
+      if (slots.hessian) store_lane(elastic, e, hinges[l].nodes, lanes, l, weight_of(elastic, e, form), slots);
     }
   }
 }
@@ -114,28 +137,26 @@ void for_each_joint(const Elastic& elastic, int joints_begin, int begin, int end
   });
 }
 
-void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, bool forces, bool pairs,
-                          HessianForm form, AssemblyScratch& scratch) {
+void derivatives_of_chunk(const Elastic& elastic, const Points& x, int begin, int end, HessianForm form,
+                          const Slots& slots) {
   const int hinges_begin = static_cast<int>(elastic.membrane.size());
   const int curved_begin = hinges_begin + static_cast<int>(elastic.hinges.size());
   const int joints_begin = curved_begin + static_cast<int>(elastic.curved.size());
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
-  if (begin < hinges_begin)
-    derivatives_of_membranes(elastic, x, begin, std::min(end, hinges_begin), forces, pairs, form, scratch);
+  if (begin < hinges_begin) derivatives_of_membranes(elastic, x, begin, std::min(end, hinges_begin), form, slots);
   if (end > hinges_begin && begin < curved_begin)
-    derivatives_of_hinges(elastic, x, std::max(begin, hinges_begin), std::min(end, curved_begin), forces, pairs, form,
-                          scratch);
+    derivatives_of_hinges(elastic, x, std::max(begin, hinges_begin), std::min(end, curved_begin), form, slots);
   for (int e = std::max(begin, curved_begin); e < std::min(end, joints_begin); ++e) {
-    curved_derivatives(elastic.curved[e - curved_begin], x, gradient, pairs ? &hessian : nullptr);
-    store(elastic, e, gradient, hessian, weight_of(elastic, e, form), forces, pairs, scratch);
+    curved_derivatives(elastic.curved[e - curved_begin], x, gradient, slots.hessian ? &hessian : nullptr);
+    store(elastic, e, gradient, hessian, weight_of(elastic, e, form), slots);
   }
   for_each_joint(elastic, joints_begin, begin, end, [&](int e, const auto& joint) {
     constexpr int size = 3 * std::tuple_size_v<decltype(nodes_of(joint))>;
     Eigen::Matrix<double, size, 1> own_gradient;
     Eigen::Matrix<double, size, size> own_hessian;
-    joint_derivatives(joint, x, own_gradient, pairs ? &own_hessian : nullptr, form != HessianForm::exact);
-    store(elastic, e, own_gradient, own_hessian, weight_of(elastic, e, form), forces, pairs, scratch);
+    joint_derivatives(joint, x, own_gradient, slots.hessian ? &own_hessian : nullptr, form != HessianForm::exact);
+    store(elastic, e, own_gradient, own_hessian, weight_of(elastic, e, form), slots);
   });
 }
 
@@ -229,15 +250,15 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
     gradient->resize(vertices, 3);
   }
   if (hessian) {
-    scratch.pairs.resize(elastic.pair_begin.back());
+    scratch.pairs.resize(elastic.further.item.size());
     hessian->resize(pairs);
   }
+  const Slots slots{elastic, gradient != nullptr, hessian, scratch};
 #pragma omp parallel if (tasks > 8)
   {
 #pragma omp for schedule(dynamic)  // an element's cost depends on its kind
     for (int c = 0; c < tasks; ++c)
-      derivatives_of_chunk(elastic, x, c * assembly_chunk, std::min(count, (c + 1) * assembly_chunk), gradient, hessian,
-                           form, scratch);
+      derivatives_of_chunk(elastic, x, c * assembly_chunk, std::min(count, (c + 1) * assembly_chunk), form, slots);
     if (gradient) {
 #pragma omp for schedule(static) nowait
       for (int i = 0; i < vertices; ++i) {
@@ -250,10 +271,8 @@ void elastic_derivatives(const Elastic& elastic, const Points& x, AssemblyScratc
     if (hessian) {
 #pragma omp for schedule(static)
       for (int p = 0; p < pairs; ++p) {
-        const std::span<const int> slots = elastic.pair_slots.of(p);
-        Mat3 sum = scratch.pairs[slots.front()];
-        for (const int slot : slots.subspan(1)) sum += scratch.pairs[slot];
-        (*hessian)[p] = sum;
+        Mat3& sum = (*hessian)[p];
+        for (const int place : elastic.further.of(p)) sum += scratch.pairs[place];
       }
     }
   }

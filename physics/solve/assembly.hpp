@@ -28,11 +28,14 @@ struct Elastic {
   std::vector<double> vertex_damping;   // the same of each vertex
   PairPattern pattern;
   IndexLists force_slots;  // of each vertex
-  IndexLists pair_slots;   // of each pair
+  // Where the block of each pair slot is written: at ~pair in the Hessian itself for the first slot of each pair, else
+  // in the scratch. `further`: the places in the scratch that are added to each pair.
+  std::vector<int> pair_place;
+  IndexLists further;
 };
 Elastic make_elastic(const Scene&);
 
-// The slots that elements write. Kept between calls only to save allocations.
+// The slots that elements write, but for those in the Hessian. Kept between calls only to save allocations.
 struct AssemblyScratch {
   Points forces;
   PairBlocks pairs;

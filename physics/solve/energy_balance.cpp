@@ -32,7 +32,10 @@ bool is_driven(const Scene& scene, const State& from, const State& to, const Dri
 }  // namespace
 
 EnergyBalance::EnergyBalance(const Scene& scene, const StepperTraits& traits)
-    : scene_(without_ignored(scene, traits)), terms_(energy_terms(scene_)), edge_length_(mean_edge_length(scene_)) {}
+    : reduced_(traits.ignores.empty() ? std::nullopt : std::optional<Scene>(without_ignored(scene, traits))),
+      scene_(reduced_ ? *reduced_ : scene),
+      terms_(energy_terms(scene_)),
+      edge_length_(mean_edge_length(scene_)) {}
 
 // Caches the last result: a step usually starts with the state that the step before ended with.
 Energies EnergyBalance::energies_of(const State& state, const Vec3& acceleration) {

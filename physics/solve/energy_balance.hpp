@@ -16,7 +16,8 @@ struct EnergyGain {
 };
 
 // Judges the energy of a scene step by step. Small unexplained gains of several steps are judged together:
-// State::memory holds their sum. Forces that a stepper with these traits ignores are left out. Holds caches.
+// State::memory holds their sum. Forces that a stepper with these traits ignores are left out. Holds caches, and a
+// reference to the scene.
 class EnergyBalance {
  public:
   explicit EnergyBalance(const Scene&, const StepperTraits& = {});
@@ -34,7 +35,8 @@ class EnergyBalance {
   Energies energies_of(const State&, const Vec3& acceleration);
   double work_of(const State& from, const State& to, const Drive&, bool proposed);
 
-  Scene scene_;  // without the forces that the stepper ignores
+  std::optional<Scene> reduced_;  // without the forces that the stepper ignores; absent if it ignores none
+  const Scene& scene_;            // that, or the scene itself
   EnergyTerms terms_;
   double edge_length_;
   std::optional<WorkBound> work_;  // made when first needed

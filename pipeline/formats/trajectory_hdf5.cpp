@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
@@ -81,8 +82,8 @@ struct TrajectoryWriter::Impl {
   std::vector<std::string> by_names;
   std::int64_t frames = 0, bad_length = 0;
 
-  Impl(const std::filesystem::path& path, const TrajectoryInfo& constant)
-      : file(h5::File::create(path)), info(constant), still(constant.obstacles.size()) {}
+  Impl(const std::filesystem::path& path, TrajectoryInfo constant)
+      : file(h5::File::create(path)), info(std::move(constant)), still(info.obstacles.size()) {}
 
   void make_datasets();
   int code_of(const std::string& by_name);
@@ -95,6 +96,7 @@ struct TrajectoryWriter::Impl {
 
 void TrajectoryWriter::Impl::make_datasets() {
   write_constants(file, info);
+  info.rest_triangle = {};  // is in the file, and no frame needs it
   const std::int64_t zero = 0;
   file.write_constant("frames_complete", H5T_NATIVE_INT64, {1}, &zero);
   file.write_constant("closed", H5T_NATIVE_INT64, {1}, &zero);
@@ -144,10 +146,10 @@ void TrajectoryWriter::Impl::set(const h5::Handle& flag, std::int64_t value) {
 }
 
 // The file gets its name only once it is open for SWMR, so that a file with that name can always be opened.
-TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryInfo& info) {
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, TrajectoryInfo info) {
   const std::filesystem::path beside = path_beside(path);
   try {
-    impl_ = std::make_unique<Impl>(beside, info);
+    impl_ = std::make_unique<Impl>(beside, std::move(info));
     impl_->make_datasets();
     impl_->file.start_swmr();
     impl_->file.flush();

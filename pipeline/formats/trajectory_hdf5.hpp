@@ -17,7 +17,7 @@ TrajectoryInfo trajectory_info(const Scene&, const std::string& config, const st
 // file is not marked closed.
 class TrajectoryWriter {
  public:
-  TrajectoryWriter(const std::filesystem::path&, const TrajectoryInfo&);
+  TrajectoryWriter(const std::filesystem::path&, TrajectoryInfo);
   ~TrajectoryWriter();
   void append(const Frame&);
   void close();

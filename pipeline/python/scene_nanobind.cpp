@@ -135,7 +135,7 @@ void SceneObject::record(const std::filesystem::path& folder) {
   remove_results(folder);
   TrajectoryInfo info = trajectory_info(setup_.scene, setup_.config, stepper_->traits().name, setup_.run.fps);
   info.contact_forces = stepper_->traits().reports_contact_forces;
-  recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", info),
+  recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", std::move(info)),
                                  energy_terms(setup_.scene, stepper_->traits())});
   recording_->writer.append(record_initial(setup_.scene, recording_->terms, state_, setup_.drive_at(state_.time)));
 }

@@ -150,8 +150,12 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   TrajectoryInfo info = trajectory_info(setup.scene, setup.config, stepper.traits().name, setup.run.fps);
   info.looks = setup.looks;
   info.contact_forces = stepper.traits().reports_contact_forces;
-  Recorder recorder{
-      setup, request, summary, inputs, TrajectoryWriter(first_file, info), energy_terms(setup.scene, stepper.traits())};
+  Recorder recorder{setup,
+                    request,
+                    summary,
+                    inputs,
+                    TrajectoryWriter(first_file, std::move(info)),
+                    energy_terms(setup.scene, stepper.traits())};
   if (start) {
     const Drive drive = setup.drive_at(state.time);
     recorder.add(record_initial(setup.scene, recorder.terms, state, drive));

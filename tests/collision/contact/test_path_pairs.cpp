@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "collision/contact/pair_motion.hpp"
 #include "collision/contact/path_pairs.hpp"
 #include "tests/collision/sheets.hpp"
 
@@ -57,10 +58,10 @@ TEST_CASE("path pairs: a pair is left out only if it stays away", "[path_pairs]"
     // A common drift costs nothing; what differs from node to node does.
     Points x0 = shaken(start, 3e-4, seed), x1 = shaken(start, 3e-4, 10 * seed);
     x0.array() += 1e-4 * seed;
-    const PathMotion motion(path, x0, x1);
+    const PairMotion motion(path.start, x0, x1);
     for (std::size_t i = 0; i < path.pairs.size(); ++i)
       for (const double distance : {2e-4, 2e-3}) {
-        const bool may = motion.may_come_within(i, distance);
+        const bool may = motion.may_come_within(path.pairs[i], path.gap[i], distance);
         (may ? in : out)++;
         if (!may) CHECK(least_distance(path.pairs[i], x0, x1) > distance);
       }
@@ -69,7 +70,7 @@ TEST_CASE("path pairs: a pair is left out only if it stays away", "[path_pairs]"
   CHECK(out > 100);
   Points far = start;
   far.array() += 100;
-  CHECK_FALSE(PathMotion(path, far, far).may_come_within(0, 0.9 * path.gap[0]));
+  CHECK_FALSE(PairMotion(path.start, far, far).may_come_within(path.pairs[0], path.gap[0], 0.9 * path.gap[0]));
 }
 
 TEST_CASE("path pairs: what is near is listed, from a kept list as from a new one", "[path_pairs]") {
@@ -176,6 +177,36 @@ TEST_CASE("path pairs: boxes of long motions overlap, and only what may come nea
     const bool listed = std::ranges::find(path.pairs, pair) != path.pairs.end();
     CHECK((listed || least_distance(pair, both.x, end) > 2e-3));
   }
+}
+
+TEST_CASE("path pairs: a search for what may come near lists no other pairs than one that leaves the rest out later",
+          "[path_pairs]") {
+  TwoSheets both(join(sheet(8, 0.2, 0), sheet(7, 0.2, 3e-3)));
+  const double reach = 4e-3;
+  const Points start = shaken(both.x, 5e-4, 3), end = shaken(start, GENERATE(5e-4, 6e-3), 4);
+  std::vector<char> marks(static_cast<std::size_t>(both.x.rows()), GENERATE(0, 1));
+  marks[40] = 1;
+  std::vector<NodePair> boxes, near;
+  std::vector<double> gap;
+  both.search.find(start, end, reach, boxes, marks);
+  const std::int64_t overlapping = both.search.tally().candidates;
+  both.search.find_near(start, end, reach, near, gap, marks);
+  CHECK(both.search.tally().candidates == 2 * overlapping);
+  CHECK(both.search.tally().searches == 2);
+  const PairMotion motion(start, start, end);
+  std::vector<NodePair> expected;
+  std::vector<double> expected_gap;
+  for (const NodePair& pair : boxes)
+    if (const auto own = gap_if_near(motion, pair, start, reach)) {
+      expected.push_back(pair);
+      expected_gap.push_back(*own);
+      CHECK(*own == std::sqrt(closest(pair, start).squared_distance));
+    } else {
+      CHECK(least_distance(pair, start, end) > reach);
+    }
+  CHECK(near == expected);  // in the same order
+  CHECK(gap == expected_gap);
+  CHECK(near.size() > 3);
 }
 
 }  // namespace selvedge::test_path_pairs

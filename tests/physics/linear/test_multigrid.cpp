@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <Eigen/Dense>
@@ -264,6 +265,38 @@ TEST_CASE("Galerkin products are P^T A P, of matrices and of contacts", "[multig
   reflect(product, coarse, coarse_blocks.data(), 0, p.coarse_count());
   const Eigen::MatrixXd expected = weights.transpose() * dense(fine, blocks, diagonal) * weights;
   CHECK((dense(coarse, single(coarse_blocks), coarse_diagonal) - expected).norm() < 1e-5 * expected.norm());
+
+  // With some blocks as constants, whose part is in `constant`, the product is the same.
+  ConstantEntries constant;
+  Blocks other = blocks;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const int row =
+        static_cast<int>(std::ranges::upper_bound(fine.begin, static_cast<int>(k)) - fine.begin.begin()) - 1;
+    const bool is_constant = fine.column[k] != row && (row + fine.column[k]) % 3 == 0;
+    constant.value.push_back(is_constant ? 1 + row + fine.column[k] : std::numeric_limits<double>::quiet_NaN());
+    if (is_constant) other[k] = columns_of<float>(constant.value.back() * Mat3::Identity());
+  }
+  const auto coarse_of_other = [&](const Product& terms) {
+    accumulate(terms, paired(other).data(), diagonal.data(), coarse_blocks.data(), coarse_diagonal.data(), 0,
+               p.coarse_count());
+    reflect(terms, coarse, coarse_blocks.data(), 0, p.coarse_count());
+    return dense(coarse, single(coarse_blocks), coarse_diagonal);
+  };
+  coarse_blocks.assign(coarse_blocks.size(), BlockPair<float>{});
+  coarse_diagonal.assign(coarse_diagonal.size(), BlockColumns<float>{});
+  const Eigen::MatrixXd of_all = coarse_of_other(product);
+  RowPattern pattern;
+  const Product of_rest = make_product(fine, true, p, transpose(p), pattern, &constant);
+  CHECK(pattern.column == coarse.column);
+  CHECK(of_rest.term.size() < product.term.size());
+  for (int a = 0; a < p.coarse_count(); ++a) {
+    coarse_diagonal[a] = columns_of<float>(constant.diagonal[a] * Mat3::Identity());
+    for (int k = coarse.begin[a]; k < coarse.begin[a + 1]; ++k)
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 4; ++r)
+          column_of(coarse_blocks.data(), k, c).lanes[r] = r == c ? static_cast<float>(constant.sum[k]) : 0;
+  }
+  CHECK((coarse_of_other(of_rest) - of_all).norm() < 1e-5 * of_all.norm());
 
   Eigen::MatrixXd touching = Eigen::MatrixXd::Zero(weights.rows(), weights.rows());
   Blocks factors;
