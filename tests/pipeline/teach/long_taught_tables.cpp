@@ -49,9 +49,9 @@ std::vector<std::string> names_in(const std::string& text) {
 
 struct Row {
   std::string name;
-  std::vector<std::string> overrides;  // of the scene
-  bool student = false;                // a hybrid with the network
-  std::string fitted = {};             // coefficients of the guess from which one rough solve begins
+  std::vector<std::string> overrides;      // of the scene
+  bool student = false;                    // a hybrid with the network
+  std::optional<CarriedModel> guess = {};  // from which one rough solve begins, wherever that is
 };
 
 std::vector<Row> rows(const std::string& outfit) {
@@ -66,19 +66,21 @@ std::vector<Row> rows(const std::string& outfit) {
   if (!fitted.empty()) all.push_back({"fitted", {"run.stepper=carried_fitted", "run.learned.weights=" + fitted}});
   if (!weights.empty()) all.push_back({"student, response", hybrid("response"), true});
   all.push_back({"carried_rough", {"run.stepper=carried_rough"}});
-  if (!fitted.empty()) all.push_back({"fitted, rough solve", {"run.stepper=conventional"}, false, fitted});
+  all.push_back({"carried guess, rough solve", {"run.stepper=conventional"}, false, CarriedModel{}});
+  if (!fitted.empty())
+    all.push_back({"fitted, rough solve", {"run.stepper=conventional"}, false, read_taught_carried(fitted).model});
   if (!weights.empty()) all.push_back({"student, rough solve", hybrid("rough"), true});
   all.push_back({"draft", {"run.stepper=conventional", "run.quality=draft"}});
   all.push_back({"preview", {"run.stepper=conventional", "run.quality=preview"}});
   return all;
 }
 
-// One rough solve that begins at a fitted guess, then the response: what the hybrid's mode `rough` is, unjudged.
+// One rough solve that begins at the guess, then the response: what the hybrid's mode `rough` is, unjudged.
 class SolveFromGuess final : public Stepper {
  public:
   SolveFromGuess(const Scene& scene, CarriedModel model)
       : scene_(scene), model_(std::move(model)), behind_(make_behind(scene, BehindNetwork::solve)) {
-    traits_.name = "fitted, rough solve";
+    traits_.name = "guess, rough solve";
     traits_.past_frames = past_frames(model_);
   }
   const StepperTraits& traits() const override { return traits_; }
@@ -108,9 +110,9 @@ Setup setup_of(const std::string& outfit, const std::string& clip, std::vector<s
 }
 
 std::unique_ptr<Stepper> stepper_of(const Setup& setup, const Row& row) {
-  if (row.fitted.empty()) return make_stepper(setup);
+  if (!row.guess) return make_stepper(setup);
   return make_following_stepper(setup.scene, setup.followers,
-                                std::make_unique<SolveFromGuess>(setup.scene, read_taught_carried(row.fitted).model));
+                                std::make_unique<SolveFromGuess>(setup.scene, *row.guess));
 }
 
 // The state as if the hybrid had made it, so that it asks for a proposal in the first frame too.
@@ -208,7 +210,8 @@ TEST_CASE("taught network: distance from the solver's roll-outs, beside what lea
                                            "solver.max_newton=60",           "solver.linear_tolerance=0.05"};
   const int every = std::stoi(given("SELVEDGE_TAUGHT_EVERY", "2"));
   std::map<std::string, std::vector<Measured>> all;
-  for (const std::string& outfit : names_in(given("SELVEDGE_TAUGHT_OUTFITS", "summer")))
+  const std::vector<std::string> outfits = names_in(given("SELVEDGE_TAUGHT_OUTFITS", "summer"));
+  for (const std::string& outfit : outfits)
     for (const std::string& name : names_in(given("SELVEDGE_TAUGHT_CLIPS", "walk,dance_sway"))) {
       const std::optional<TaughtClip> clip = simulate_clip(setup_of(outfit, name, converged), name, {}, nullptr);
       REQUIRE(clip);
@@ -221,13 +224,13 @@ TEST_CASE("taught network: distance from the solver's roll-outs, beside what lea
       }
     }
   print_title("all");
-  for (const Row& row : rows("")) {
+  for (const Row& row : rows(outfits.front())) {
     Measured sum;
     for (const Measured& one : all[row.name]) add(one, sum);
     print_row(row, sum);
   }
   for (const char* other : {"carried", "fitted"}) print_ratio("student, response", other, all);
-  for (const char* other : {"carried_rough", "fitted, rough solve", "draft", "preview"})
+  for (const char* other : {"carried_rough", "carried guess, rough solve", "fitted, rough solve", "draft", "preview"})
     print_ratio("student, rough solve", other, all);
 }
 
