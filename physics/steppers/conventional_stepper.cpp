@@ -15,7 +15,6 @@
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/solve/euler_torque.hpp"
-#include "physics/solve/forces_of_terms.hpp"
 #include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
@@ -85,7 +84,6 @@ class ConventionalStepper final : public Stepper {
   bool yield_obstacles(StepWork&, const std::vector<Proximity>&, Substep&);
   bool raises_energy(const StepProblem&, const Points& x, const Points& after);
   void stop_short(StepWork&, const Points& wanted, Substep&);
-  void stick(Substep&, const StepProblem&, const Contacts&, Points& x) const;
   SubstepOutcome respond(StepWork&, Substep&, const StepProblem&, const NewtonReport&, const Contacts&, Points& x);
   SubstepOutcome substep(StepWork&, Substep&);
   Substep begin_substep(const StepWork&, const SubstepState&, const SubstepRun& target, SubstepAttempt,
@@ -215,29 +213,11 @@ void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Subst
   work.report.collision.held_vertices += scene_.surface.vertex_count;
 }
 
-// Static friction. Moves x; measures the forces of contact, if the substep does.
-void ConventionalStepper::stick(Substep& s, const StepProblem& problem, const Contacts& contacts, Points& x) const {
-  const double slip_width = options_.implicit_euler.slip_speed * s.h;
-  const auto apply = [&](Points* forces) {
-    apply_static_friction(contacts.terms, contact_.inverse_mass, *problem.x0, s.h, slip_width, x,
-                          options_.substep.contact, forces);
-  };
-  if (!s.measures_forces) return apply(nullptr);
-  const Points solved = x;
-  Points sticking = Points::Zero(x.rows(), 3);
-  apply(&sticking);
-  s.forces = std::make_shared<const ContactForces>(
-      forces_of_terms(scene_, {contacts.terms, s.friction_loads, *problem.x0, solved, slip_width}, sticking));
-}
-
 // Static friction, then Bridson's response, from the solved positions x.
 SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const StepProblem& problem,
                                             const NewtonReport& newton, const Contacts& contacts, Points& x) {
   const int n = scene_.surface.vertex_count;
-  {
-    const Timed timed(work.report.seconds.response);
-    stick(s, problem, contacts, x);
-  }
+  solve_.stick(s, problem, contacts, x, work.report);
   s.nodes.topRows(n) = x;
   ResolveOptions options = resolve_options(work);
   options.last_resort = s.attempt == SubstepAttempt::last_resort;
@@ -314,7 +294,7 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
   if (work.extras.guess) s.nodes.topRows(n) = towards(*work.extras.guess);
   if (work.carried) s.carried = towards(*work.carried);
   s.nodes(scene_.pins, Eigen::all) = s.pins;
-  s.measures_forces = options_.contact_forces;
+  if (options_.contact_forces) s.forces = std::make_shared<const ContactForces>(no_contact_forces(n));
   return s;
 }
 
@@ -327,8 +307,7 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
     now.history = {s.h, now.nodes.topRows(scene_.surface.vertex_count), std::move(now.v)};
   now.v = std::move(s.v);
   now.nodes = std::move(s.nodes);
-  now.forces = s.forces || !s.measures_forces ? std::move(s.forces)
-                                              : std::make_shared<const ContactForces>(no_contact_forces(now.v.rows()));
+  now.forces = std::move(s.forces);
 }
 
 // Takes all substeps. A substep with impacts in fast motion is cut into parts. One whose zones do not converge is tried

@@ -29,7 +29,7 @@ struct ConventionalOptions {
   ImplicitEulerOptions implicit_euler;
   SubstepOptions substep;
   ResolveOptions resolve;
-  bool contact_forces = false;        // StepReport::contact_forces
+  bool contact_forces = false;
   const char* name = "conventional";  // of the stepper, in reports
 };
 

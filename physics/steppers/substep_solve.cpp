@@ -4,6 +4,7 @@
 
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/scene/features.hpp"
+#include "physics/solve/forces_of_terms.hpp"
 #include "physics/steppers/count_solve.hpp"
 
 namespace selvedge {
@@ -70,7 +71,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     const NewtonReport newton = once(problem, x, report);
     if (!newton.finite || newton.stopped) return newton;
     s.nodes.topRows(x.rows()) = x;
-    if (s.measures_forces) s.friction_loads = normal_forces(contacts.terms);
+    if (s.forces) s.friction_loads = normal_forces(contacts.terms);
     const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
     if (pass == (s.pinched ? options_.pinched_passes : options_.max_passes)) return newton;
@@ -92,6 +93,22 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     if (pass == least - 1)
       relinearise(scene_, stage_.world, stage_.inverse_mass, nodes0, s.nodes, s.h, contacts, options_.contact);
   }
+}
+
+void SubstepSolve::stick(Substep& s, const StepProblem& problem, const Contacts& contacts, Points& x,
+                         StepReport& report) const {
+  const Timed timed(report.seconds.response);
+  const double slip_width = slip_speed_ * s.h;
+  const auto apply = [&](Points* forces) {
+    apply_static_friction(contacts.terms, stage_.inverse_mass, *problem.x0, s.h, slip_width, x, options_.contact,
+                          forces);
+  };
+  if (!s.forces) return apply(nullptr);
+  const Points solved = x;
+  Points sticking = Points::Zero(x.rows(), 3);
+  apply(&sticking);
+  s.forces = std::make_shared<const ContactForces>(
+      forces_of_terms(scene_, {contacts.terms, s.friction_loads, *problem.x0, solved, slip_width}, sticking));
 }
 
 std::vector<Proximity> SubstepSolve::near(const Substep& s, StepReport& report) {

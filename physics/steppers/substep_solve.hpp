@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "physics/scene/contact_forces.hpp"
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/implicit_euler.hpp"
 #include "physics/steppers/contact_stage.hpp"
@@ -27,9 +28,8 @@ struct Substep {
   bool pinched = false;               // obstacles leave the cloth no room
   int parts = 1;                      // parts into which it should be cut
   Eigen::VectorXd inverse_mass = {};  // of all nodes, with those of obstacles that give way
-  bool measures_forces = false;       // of contact
   std::vector<double> friction_loads = {};  // the normal forces that bounded friction in the last solve, if it does [N]
-  std::shared_ptr<const ContactForces> forces = {};  // at its end; null: none, or not measured
+  std::shared_ptr<const ContactForces> forces = {};  // of contact, at its end; null: not asked for
 };
 
 // The implicit solves of a substep. Times and counts go into reports. Keeps references to the scene and the stage.
@@ -54,6 +54,8 @@ class SubstepSolve {
   // the cloth in the substep's nodes. Returns the report of the last solve. Ends after the first solve if that shows
   // that the substep should be cut into parts.
   NewtonReport with_contact(Substep&, StepProblem&, Points& x, Contacts&, StepReport&);
+  // Static friction behind the solve. Moves x; measures the forces of contact, if they are asked for.
+  void stick(Substep&, const StepProblem&, const Contacts&, Points& x, StepReport&) const;
 
  private:
   const Scene& scene_;
