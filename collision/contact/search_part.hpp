@@ -50,7 +50,7 @@ class SearchPart {
   bool ends_ = false;
   std::vector<Box> vertex_boxes_, triangle_boxes_;  // round the motion
   std::vector<Box> start_, end_;                    // of the vertices, at its ends
-  std::vector<char> filled_;  // by leaf
+  std::vector<char> filled_;                        // by leaf
 };
 
 // Does the box overlap that of any leaf, or with `marked` that of any marked leaf?

@@ -20,14 +20,14 @@ struct Substep {
   const Points& pins;  // at its end, one row a Scene::pins entry
   double h;            // [s]
   SubstepAttempt attempt;
-  int max_parts;                      // most parts into which it may be cut
-  Points nodes, v = {};               // at its end; at first the wanted obstacles and a guess of the cloth
-  Points carried = {};                // a further first guess of the cloth at its end; empty: none
-  Points unbalanced = {};             // unbalanced forces after the last solve [N]
-  bool touched = false;               // some pair was near, met, or was left alone
-  bool pinched = false;               // obstacles leave the cloth no room
-  int parts = 1;                      // parts into which it should be cut
-  Eigen::VectorXd inverse_mass = {};  // of all nodes, with those of obstacles that give way
+  int max_parts;                            // most parts into which it may be cut
+  Points nodes, v = {};                     // at its end; at first the wanted obstacles and a guess of the cloth
+  Points carried = {};                      // a further first guess of the cloth at its end; empty: none
+  Points unbalanced = {};                   // unbalanced forces after the last solve [N]
+  bool touched = false;                     // some pair was near, met, or was left alone
+  bool pinched = false;                     // obstacles leave the cloth no room
+  int parts = 1;                            // parts into which it should be cut
+  Eigen::VectorXd inverse_mass = {};        // of all nodes, with those of obstacles that give way
   std::vector<double> friction_loads = {};  // the normal forces that bounded friction in the last solve, if it does [N]
   std::shared_ptr<const ContactForces> forces = {};  // of contact, at its end; null: not asked for
 };

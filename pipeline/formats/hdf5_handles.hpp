@@ -46,7 +46,7 @@ class File {
  public:
   // A file that must not exist yet: take a path_beside, then rename it. `followed`: others read it while it is written.
   static File create(const std::filesystem::path&, bool followed = true);
-  static File open(const std::filesystem::path&);    // SWMR read: also opens files of killed writers
+  static File open(const std::filesystem::path&);  // SWMR read: also opens files of killed writers
 
   hid_t id() const { return handle_.id(); }
   const std::filesystem::path& path() const { return path_; }

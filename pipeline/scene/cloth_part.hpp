@@ -34,7 +34,7 @@ struct ClothPart {
   std::vector<Follower> followers;
   std::shared_ptr<const Wearing> worn;  // null for what is no garment
   std::vector<int> sewn;  // of each vertex as read or made: its number here; empty where nothing is welded or sewn
-  double sewn_apart = 0;                // how far vertices that are one now were apart [m]
+  double sewn_apart = 0;  // how far vertices that are one now were apart [m]
   std::optional<Draping> draping;
   bool cut = false;  // what of it is tangled is cut out at the start
 };
