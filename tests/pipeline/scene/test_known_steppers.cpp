@@ -191,7 +191,9 @@ TEST_CASE("known steppers: a network beside the carried guess, behind the respon
   for (const std::string mode : {"response", "rough"}) {
     INFO(mode);
     const Folder folder("student_" + mode);
-    const Setup setup = scene_for("hybrid", folder, {"run.hybrid.mode=" + mode, "run.hybrid.guard.stretch=10"},
+    // Pins would stretch a sheet whose guess is free fall, and behind the response nothing is solved.
+    const std::string pins = mode == "rough" ? "[{group: [top_left]}]" : "[]";
+    const Setup setup = scene_for("hybrid", folder, {"run.hybrid.mode=" + mode, "cloths.0.pins=" + pins},
                                   fake::narrow_network("student", 1e-5));
     auto kept = make_stepper(setup), dropped = make_stepper(setup);
     State a = setup.initial, b = setup.initial;

@@ -149,6 +149,7 @@ TEST_CASE("view: the page colours cloth by the pressure of each frame", "[view][
   run.info.contact_forces = true;
   run.frame = [frame = run.frame](int index) {
     Frame f = frame(3);  // the same place in each frame, so that colours alone change
+    f.time = frame(index).time;
     ContactForces forces = unknown_contact_forces(f.x.rows());
     if (index > 0) forces.pressure.setConstant(1000.0 * (index - 1));
     f.report.contact_forces = std::make_shared<const ContactForces>(forces);
