@@ -93,6 +93,18 @@ testing::Sheet ball(double radius) {
   return s;
 }
 
+// A sheet just above the floor, and another one as a second cloth.
+World beside_a_sheet_on_the_floor(const testing::Sheet& other) {
+  World w = make_world(testing::sheet(6, 0.2, 0.002));
+  selvedge::add_cloth(w.scene, other.x, other.triangles, {}, "other");
+  Points both(w.state.x.rows() + other.x.rows(), 3);
+  both << w.state.x, other.x;
+  w.state = first_state(w.scene, both);
+  w.drive = at_rest(w.scene, w.state);
+  add_obstacle(w, testing::sheet(2, 0.6, 0));
+  return with_gravity(w);
+}
+
 }  // namespace
 
 TEST_CASE("the normal forces on a sheet that lies on a plate are its weight, and the pressure is weight by area") {
@@ -145,15 +157,8 @@ TEST_CASE("friction of a sheet that slides is the coefficient times the normal f
 }
 
 TEST_CASE("contact forces between cloths cancel, and a layer between two others has its pressure") {
-  World w = make_world(testing::sheet(6, 0.2, 0.002));
   const testing::Sheet upper = testing::sheet(6, 0.2, 0.0045);
-  selvedge::add_cloth(w.scene, upper.x, upper.triangles, {}, "upper");
-  Points both(w.state.x.rows() + upper.x.rows(), 3);
-  both << w.state.x, upper.x;
-  w.state = first_state(w.scene, both);
-  w.drive = at_rest(w.scene, w.state);
-  add_obstacle(w, testing::sheet(2, 0.6, 0));
-  w = with_gravity(w);
+  const World w = beside_a_sheet_on_the_floor(upper);
   const ContactForces forces = forces_after(w, 60);
   const int n = static_cast<int>(upper.x.rows());
   CHECK_THAT(sum(forces.normal).y(), WithinRel(weight(w.scene), 0.01));
@@ -202,16 +207,9 @@ TEST_CASE("cloth that rests keeps the contact forces of its last step") {
 }
 
 TEST_CASE("cloth that moves beside one that rests has its own contact forces") {
-  World w = make_world(testing::sheet(6, 0.2, 0.002));
   testing::Sheet far = testing::sheet(6, 0.2, 1.5);
   far.x.col(0).array() += 1;
-  selvedge::add_cloth(w.scene, far.x, far.triangles, {}, "falling");
-  Points both(w.state.x.rows() + far.x.rows(), 3);
-  both << w.state.x, far.x;
-  w.state = first_state(w.scene, both);
-  w.drive = at_rest(w.scene, w.state);
-  add_obstacle(w, testing::sheet(2, 0.6, 0));
-  w = with_gravity(w);
+  const World w = beside_a_sheet_on_the_floor(far);
   const Stepped end = stepped(w, *stepper_of(w.scene, true, true), 30);
   REQUIRE(end.report.resting == 1);
   const int n = static_cast<int>(far.x.rows());
