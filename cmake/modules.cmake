@@ -24,12 +24,13 @@ if(SELVEDGE_OPENMP)
 endif()
 
 # selvedge_module(NAME [ROOMS room...] LEFT_OUT stem... ALONE room... HEADERS header... HEADERS_OF module
-#   OPTIONS option... PUBLIC library... PRIVATE library... [HEAVY source library]): the sources of this folder and of its
-# rooms, but those left out, as the library selvedge_NAME; with ROOMS, of these rooms only. The files of the rooms ALONE are
-# not compiled together. HEADERS are precompiled beside the common ones; HEADERS_OF takes those of another module with the
-# same options. Files with an OpenMP pragma are a target of their own, selvedge_NAME_parallel, and so is the source that alone
-# sees the heavy package, selvedge_NAME_heavy: all others have the same flags in every build, so that a compile cache serves
-# builds with these packages and without. OPTIONS are for these others.
+#   OPTIONS option... PUBLIC library... PRIVATE library... [HEAVY source library])
+# makes the library selvedge_NAME of the sources of this folder and of its rooms, but those left out; with ROOMS, of
+# these rooms only. The files of the rooms ALONE are not compiled together. HEADERS are precompiled beside the common
+# ones; HEADERS_OF takes those of another module with the same options. Files with an OpenMP pragma are a target of
+# their own, selvedge_NAME_parallel, and so is the source that alone sees the heavy package, selvedge_NAME_heavy. All
+# others have the same flags in every build, so that a compile cache serves builds with these packages and without.
+# OPTIONS are for these others.
 function(selvedge_module name)
   cmake_parse_arguments(module "" "HEADERS_OF" "ROOMS;LEFT_OUT;ALONE;HEADERS;OPTIONS;PUBLIC;PRIVATE;HEAVY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
@@ -111,8 +112,8 @@ function(selvedge_objects name target)
   target_sources(selvedge_${name} PRIVATE $<TARGET_OBJECTS:${target}>)
 endfunction()
 
-# selvedge_compile_together(TARGET ALONE source...): the sources of a folder are compiled a few at a time. Sources with flags
-# of their own are compiled alone.
+# selvedge_compile_together(TARGET ALONE source...): the sources of a folder are compiled a few at a time. Sources with
+# flags of their own are compiled alone.
 function(selvedge_compile_together target alone)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SELVEDGE_UNITY} UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS ARGN)

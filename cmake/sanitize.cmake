@@ -1,6 +1,6 @@
-# SELVEDGE_SANITIZE is a list for -fsanitize, such as address;undefined, and SELVEDGE_NO_SANITIZE of what of it to leave out: the
-# checks that gcc takes longest to compile are left to the full build. A finding ends the program. The flags go where
-# compile checks see them too.
+# SELVEDGE_SANITIZE is a list for -fsanitize, such as address;undefined. SELVEDGE_NO_SANITIZE lists checks to leave out
+# of it: those that gcc takes longest to compile are left to the full build. A finding ends the program. The flags go
+# where compile checks see them too.
 if(SELVEDGE_SANITIZE)
   list(JOIN SELVEDGE_SANITIZE "," sanitizers)
   string(APPEND CMAKE_CXX_FLAGS " -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all")

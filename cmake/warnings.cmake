@@ -1,5 +1,6 @@
 add_library(selvedge_warnings INTERFACE)
-target_compile_options(selvedge_warnings INTERFACE -Wall -Wextra -Wno-unknown-pragmas -Wshadow -Wnon-virtual-dtor $<$<BOOL:${SELVEDGE_WERROR}>:-Werror>)
+target_compile_options(selvedge_warnings INTERFACE -Wall -Wextra -Wno-unknown-pragmas -Wshadow -Wnon-virtual-dtor
+  $<$<BOOL:${SELVEDGE_WERROR}>:-Werror>)
 if(SELVEDGE_UNITY)
   # A file that another includes is no header here.
   target_compile_options(selvedge_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)

@@ -12,6 +12,8 @@
 namespace selvedge {
 namespace {
 
+constexpr int most_halvings = 30;  // of the time of a pair
+
 // Triangles of the cloth or of the bodies, with their numbers; only those with finite corners.
 struct Side {
   struct Face {
@@ -122,10 +124,10 @@ struct FeaturePair {
   PassedPair numbered() const {
     return {edges, {nodes[0].number(), nodes[1].number(), nodes[2].number(), nodes[3].number()}};
   }
-  Proof proof(int max_halvings, int parts) const {
+  Proof proof(int parts) const {
     const MovingPoints<4> points = relative_to(nodes[0], nodes);
-    return edges ? proof_for_edges(points, max_halvings, parts)
-                 : proof_for_vertex_and_face(points, max_halvings, parts);
+    return edges ? proof_for_edges(points, most_halvings, parts)
+                 : proof_for_vertex_and_face(points, most_halvings, parts);
   }
 };
 
@@ -136,14 +138,9 @@ struct Found {
   std::vector<std::pair<int, int>> self_at_end, body_at_end;  // as in MotionEnd
 };
 
-struct Asked {
-  const LeftOut& left_out;
-  int max_halvings;
-};
-
 struct PairAudit {
   const Side::Face &a, &b;
-  const Asked& asked;
+  const LeftOut& left_out;
   ProofWatch& watch;
   Found& found;
 
@@ -152,8 +149,8 @@ struct PairAudit {
   void take(bool edges, const std::array<Node, 4>& nodes) const {
     if (watch.ended()) return;
     const FeaturePair pair{edges, nodes};
-    if (asked.left_out && asked.left_out(pair.numbered().nodes)) return;
-    const Proof proof = pair.proof(asked.max_halvings, few_parts);
+    if (left_out && left_out(pair.numbered().nodes)) return;
+    const Proof proof = pair.proof(few_parts);
     if (proof == Proof::apart) return;
     watch.add_unproven();
     if (proof == Proof::meets) found.passed.push_back(pair.numbered());
@@ -246,18 +243,18 @@ void audit_pair(const MovingFaces& faces, const Side& other, int i, int j, const
   pair.features();
 }
 
-void audit_part(const BoxPairs& pairs, int part, const MovingFaces& faces, const Asked& asked, AuditBudget& budget,
+void audit_part(const BoxPairs& pairs, int part, const MovingFaces& faces, const LeftOut& left_out, AuditBudget& budget,
                 ProofBudget& proofs, Found& found) {
   ProofWatch watch(budget, proofs);
   pairs.visit(
       part, budget,
       [&](int a, int b) {
         const auto [i, j] = std::minmax(a, b);
-        const PairAudit pair{faces.cloth.faces[i], faces.cloth.faces[j], asked, watch, found};
+        const PairAudit pair{faces.cloth.faces[i], faces.cloth.faces[j], left_out, watch, found};
         if (!pair.in_a_star(faces.clean)) audit_pair(faces, faces.cloth, i, j, pair, found.self_at_end);
       },
       [&](int a, int c) {
-        const PairAudit pair{faces.cloth.faces[a], faces.bodies.faces[c], asked, watch, found};
+        const PairAudit pair{faces.cloth.faces[a], faces.bodies.faces[c], left_out, watch, found};
         audit_pair(faces, faces.bodies, a, c, pair, found.body_at_end);
       });
 }
@@ -270,11 +267,11 @@ MotionEnd end_of(const MovingBody& cloth, std::span<const MovingBody> bodies, bo
 
 // Tests the pairs that the memory leaves open. All coordinates are finite.
 Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std::span<const MovingBody> bodies,
-                  const Asked& asked, AuditBudget& budget, ProofBudget& proofs) {
+                  const LeftOut& left_out, AuditBudget& budget, ProofBudget& proofs) {
   Found found;
   ProofWatch watch(budget, proofs);
   const auto look_at = [&](const Side::Face& a, const Side::Face& b) {
-    const PairAudit pair{a, b, asked, watch, found};
+    const PairAudit pair{a, b, left_out, watch, found};
     if (!watch.given_up() && !pair.triangles_stay_apart(0)) pair.features();
   };
   for (const AuditMemory::Pair& pair : questions.self_pairs) {
@@ -295,12 +292,12 @@ Found found_among(const AuditQuestions& questions, const MovingBody& cloth, std:
 
 // Pairs that few_parts did not decide get equal shares of the budget. A pair that is still open counts as passed if its
 // share was the most that any pair may have, and else as given up.
-void decide(const std::vector<FeaturePair>& open, int max_halvings, AuditBudget& budget, MotionAudit& result) {
+void decide(const std::vector<FeaturePair>& open, AuditBudget& budget, MotionAudit& result) {
   const int share = ProofBudget::share(open.size()), count = static_cast<int>(open.size());
   std::vector<Proof> decided(open.size(), Proof::open);
 #pragma omp parallel for schedule(dynamic, 4)
   for (int i = 0; i < count; ++i)
-    if (budget.add(0)) decided[i] = open[i].proof(max_halvings, share);
+    if (budget.add(0)) decided[i] = open[i].proof(share);
   for (int i = 0; i < count; ++i)
     if (decided[i] == Proof::meets || (decided[i] == Proof::open && share == most_parts))
       result.passed.push_back(open[i].numbered());
@@ -308,7 +305,7 @@ void decide(const std::vector<FeaturePair>& open, int max_halvings, AuditBudget&
       result.given_up += decided[i] == Proof::open;
 }
 
-void conclude(Found& found, int max_halvings, AuditBudget& budget, const ProofBudget& proofs, MotionAudit& result) {
+void conclude(Found& found, AuditBudget& budget, const ProofBudget& proofs, MotionAudit& result) {
   budget.check();
   if (proofs.exceeded()) {
     result.given_up = ProofBudget::most_unproven;
@@ -316,7 +313,7 @@ void conclude(Found& found, int max_halvings, AuditBudget& budget, const ProofBu
     return;
   }
   result.passed = std::move(found.passed);
-  decide(found.open, max_halvings, budget, result);
+  decide(found.open, budget, result);
   budget.check();
   std::sort(result.passed.begin(), result.passed.end());
 }
@@ -324,10 +321,9 @@ void conclude(Found& found, int max_halvings, AuditBudget& budget, const ProofBu
 }  // namespace
 
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
-                         bool self, AuditMemory* memory, const LeftOut& left_out, int max_halvings) {
+                         bool self, AuditMemory* memory, const LeftOut& left_out) {
   restore_standard_arithmetic();
   const MovingBody moving{&cloth, &x0, &x1};
-  const Asked asked{left_out, max_halvings};
   ProofBudget proofs;
   MotionAudit result;
   if (memory) {
@@ -335,8 +331,8 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
     const AuditQuestions questions = open_questions(*memory, moving, bodies, self);
     if (!questions.all) {
       AuditBudget budget(cloth.triangles.rows());
-      Found found = found_among(questions, moving, bodies, asked, budget, proofs);
-      conclude(found, max_halvings, budget, proofs, result);
+      Found found = found_among(questions, moving, bodies, left_out, budget, proofs);
+      conclude(found, budget, proofs, result);
       return result;
     }
   }
@@ -355,9 +351,9 @@ MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x
   std::vector<Found> parts(static_cast<std::size_t>(count));
   AuditBudget budget(faces.cloth.boxes.size() + faces.bodies.boxes.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int r = 0; r < count; ++r) audit_part(pairs, r, faces, asked, budget, proofs, parts[r]);
+  for (int r = 0; r < count; ++r) audit_part(pairs, r, faces, left_out, budget, proofs, parts[r]);
   Found found = joined(parts, &Found::passed, &Found::open, &Found::self_at_end, &Found::body_at_end);
-  conclude(found, max_halvings, budget, proofs, result);
+  conclude(found, budget, proofs, result);
   // A face that was left out as not finite may be finite at the end; then the list would lack its pairs.
   if (memory && result.nonfinite == 0) memory->end = end_of(moving, bodies, self, reach, std::move(found));
   return result;

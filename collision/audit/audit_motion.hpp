@@ -38,13 +38,11 @@ using LeftOut = std::function<bool(const std::array<int, 4>&)>;
 //
 // A pair is apart over an interval of time if one fixed direction separates it at both ends: along a fixed direction
 // every gap of two nodes is linear in time. Where none of the closest features' directions does, the interval is
-// halved. A pair not proven apart after `max_halvings`, or in 4,096 parts, counts as passed. So a pair that meets is
-// always found, and one that is found came within about its motion times 2^-max_halvings, or the rounding of its size.
-// Where very many pairs are hard to prove (many coincident vertices, say), the budget of proof_budget.hpp ends the
-// audit: the result says so and is never clean. `memory` only saves time. Throws TooManyPairs as the audit of a state
-// does.
+// halved. A pair not proven apart after 30 halvings, or in 4,096 parts, counts as passed. So a pair that meets is
+// always found, and one that is found came within about its motion times 2^-30, or the rounding of its size. Where very
+// many pairs are hard to prove (many coincident vertices, say), the budget of proof_budget.hpp ends the audit: the
+// result says so and is never clean. `memory` only saves time. Throws TooManyPairs as the audit of a state does.
 MotionAudit audit_motion(const Surface& cloth, const Points& x0, const Points& x1, std::span<const MovingBody> bodies,
-                         bool self = true, AuditMemory* memory = nullptr, const LeftOut& left_out = {},
-                         int max_halvings = 30);
+                         bool self = true, AuditMemory* memory = nullptr, const LeftOut& left_out = {});
 
 }  // namespace selvedge

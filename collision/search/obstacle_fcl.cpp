@@ -1,7 +1,6 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "collision/geometry/corners.hpp"

@@ -1,7 +1,5 @@
 #include "learned/graph/elastic_motion.hpp"
 
-#include <utility>
-
 namespace selvedge {
 
 Points elastic_motion(const Elastic& elastic, const GraphScene& scene, double dt, const Points& guess,

@@ -2,7 +2,7 @@
 
 #include "collision/geometry/turned_frames.hpp"
 #include "physics/energies/external.hpp"
-#include "physics/steppers/carried_stepper.hpp"
+#include "physics/steppers/carried_guess.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,6 +1,5 @@
 #include "physics/solve/forces_of_terms.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace selvedge {

@@ -8,13 +8,9 @@
 
 namespace selvedge {
 
-// The work that the response may take in one step, over all its substeps and attempts. An ordinary frame with about
-// 4,000 cloth vertices takes at most a twentieth of it (docs/results/contact.md).
-ResponseWork most_response(int cloth_vertices);
-
 // What contact of a scene needs from step to step: the numbering of nodes, the trees, the settings. Thickness,
-// separation and friction of `limits` are replaced by the scene's contact settings, and the `budget` by most_response.
-// Holds references to the scene, and caches.
+// separation and friction of `limits` are replaced by the scene's contact settings. Its `budget` is lowered to what a
+// step of a cloth of this size may take at most. Holds references to the scene, and caches.
 struct ContactStage {
   explicit ContactStage(const Scene&, const ResolveOptions& limits = {});
   ContactStage(const ContactStage&) = delete;

@@ -15,7 +15,7 @@
 #include "physics/solve/contact_terms.hpp"
 #include "physics/solve/energy_balance.hpp"
 #include "physics/solve/euler_torque.hpp"
-#include "physics/steppers/carried_stepper.hpp"
+#include "physics/steppers/carried_guess.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/substep_solve.hpp"

@@ -23,7 +23,7 @@ struct Decorations {
 std::unique_ptr<Stepper> decorated(const Scene&, const MakeStepper& bare, const Decorations& = {});
 
 // Makes bare conventional steppers with these options, for `decorated`.
-MakeStepper conventional_maker(const ConventionalOptions& = {});
+MakeStepper conventional_maker(const ConventionalOptions&);
 
 // The conventional stepper with recovery.
 std::unique_ptr<Stepper> make_recovering_conventional_stepper(const Scene&, const ConventionalOptions& = {});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "pipeline/cells/cell_list.hpp"
 
@@ -54,6 +55,20 @@ auto cell_rows(const std::vector<CellRecord>& records, const Read& read, const S
       rows.push_back(std::move(*row));
     }
   return rows;
+}
+
+// Does all cells, and adds to `rows` what `read` makes of each result, as cell_rows; `kept` of a row is set. show(row,
+// cell) is called after each. False: stopped.
+template <class Row, class Read, class Show>
+bool do_rows(const CellList& list, const std::filesystem::path& out, const CellWatch& watch, const Read& read,
+             const Show& show, std::vector<Row>& rows) {
+  return do_cells(list, out, watch, [&](const DoneCell& done) {
+    std::optional<Row> row = read(done.record.result.row);
+    if (!row) return;
+    row->kept = done.kept;
+    rows.push_back(std::move(*row));
+    show(rows.back(), done.record.cell);
+  });
 }
 
 // Lets a folder of a cell's result be found under another name too, by a relative link, where the file system has

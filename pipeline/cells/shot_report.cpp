@@ -10,8 +10,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // The fields of a row in its JSON.
 constexpr auto shot_fields = [](auto& r, const auto& visit) {
   visit("shot", r.shot);
@@ -28,24 +26,20 @@ constexpr auto shot_fields = [](auto& r, const auto& visit) {
   visit("positions_hash", r.positions_hash);
 };
 
-Json shot_to_json(const ShotRow& row) { return row_to_json(row, shot_fields); }
-
 }  // namespace
 
-std::string shot_row_json(const ShotRow& row) { return json_text(shot_to_json(row)); }
+std::string shot_row_json(const ShotRow& row) { return json_text(row_to_json(row, shot_fields)); }
 
-std::optional<ShotRow> read_shot_row(const std::string& text) {
-  return read_row<ShotRow>(text, [](const Json& json, ShotRow& row) { row_from_json(json, shot_fields, row); });
-}
+std::optional<ShotRow> read_shot_row(const std::string& text) { return read_fields<ShotRow>(text, shot_fields); }
 
 std::string shots_json(const std::vector<ShotRow>& rows) {
   return json_text({{"program_version", program_version()},
                     {"passed", std::ranges::all_of(rows, &ShotRow::passed)},
-                    {"shots", json_list(rows, shot_to_json)}});
+                    {"shots", rows_to_json(rows, shot_fields)}});
 }
 
 std::string shots_csv(const std::vector<ShotRow>& rows) {
-  return csv_of_json(json_text(json_list(rows, shot_to_json)));
+  return csv_of_json(json_text(rows_to_json(rows, shot_fields)));
 }
 
 std::string shots_table(const std::vector<ShotRow>& rows) {

@@ -1,7 +1,5 @@
 #include "pipeline/compare/compare.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -131,6 +131,26 @@ void count_values(const YAML::Node& node, const std::string& file, int depth, in
     for (const auto& pair : node) count_values(pair.second, file, depth + 1, left);
 }
 
+// Writes one key=value into the tree; plain values that stand for sections become sections on the way.
+void apply_override(const std::string& assignment, YAML::Node root, const Section& section, Origin& origin) {
+  const std::string where = "--set " + assignment;
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw Error("is not key=value", where, "write for example --set run.frames=10");
+  std::vector<std::string> words{""};
+  for (const char c : assignment.substr(0, equals)) {
+    if (c == '.')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  if (assignment.find_first_not_of(' ', equals + 1) == std::string::npos)
+    throw Error("has no value", where, "write `null` for the default, or \"\" for an empty text");
+  const YAML::Node value = loaded(assignment.substr(equals + 1), where);
+  assign(root, section, words, 0, value, where);
+  origin.overrides.push_back({fmt::format("{}", fmt::join(words, ".")), where});
+}
+
 }  // namespace
 
 std::string Origin::of(const YAML::Node& node, const std::string& path, const std::string& parent) const {
@@ -150,25 +170,6 @@ std::vector<std::string> key_names(const Section& section) {
   std::vector<std::string> names;
   for (const Key& key : section.keys) names.push_back(key.name);
   return names;
-}
-
-void apply_override(const std::string& assignment, YAML::Node root, const Section& section, Origin& origin) {
-  const std::string where = "--set " + assignment;
-  const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0)
-    throw Error("is not key=value", where, "write for example --set run.frames=10");
-  std::vector<std::string> words{""};
-  for (const char c : assignment.substr(0, equals)) {
-    if (c == '.')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  if (assignment.find_first_not_of(' ', equals + 1) == std::string::npos)
-    throw Error("has no value", where, "write `null` for the default, or \"\" for an empty text");
-  const YAML::Node value = loaded(assignment.substr(equals + 1), where);
-  assign(root, section, words, 0, value, where);
-  origin.overrides.push_back({fmt::format("{}", fmt::join(words, ".")), where});
 }
 
 Config read_config(const std::filesystem::path& path, const Section& section,

@@ -21,9 +21,6 @@ struct Origin {
   std::string of(const YAML::Node&, const std::string& path, const std::string& parent) const;
 };
 
-// Writes one key=value into the tree; plain values that stand for sections become sections on the way.
-void apply_override(const std::string& assignment, YAML::Node root, const Section&, Origin&);
-
 // Checks a tree against the table of its section.
 Config checked_section(const YAML::Node&, const Section&, const std::string& path, const std::string& parent,
                        const Origin&);

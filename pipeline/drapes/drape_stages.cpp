@@ -46,6 +46,14 @@ void restore_into(const StageFile& file, DrapeModel& model, DrapeAdam& adam) {
   }
 }
 
+// Mean error of the drapes' vertices before any layer [mm].
+double mean_vertex_error(const DrapeModel& model, const std::vector<std::unique_ptr<DrapeBody>>& bodies) {
+  double sum = 0;
+  for (const std::unique_ptr<DrapeBody>& body : bodies)
+    sum += (drape_positions(model.drape, body->sample.drape) - body->sample.drape.truth).rowwise().norm().mean();
+  return 1e3 * sum / static_cast<double>(bodies.size());
+}
+
 struct StepSums {
   double total = 0, reconstruction = 0, collision = 0, pushed = 0, alpha = 0;
   int count = 0, bad = 0;
@@ -124,13 +132,6 @@ void fit_best_linear_part(std::span<const DrapeCase* const> cases, const DrapeLe
 }
 
 }  // namespace
-
-double mean_vertex_error(const DrapeModel& model, const std::vector<std::unique_ptr<DrapeBody>>& bodies) {
-  double sum = 0;
-  for (const std::unique_ptr<DrapeBody>& body : bodies)
-    sum += (drape_positions(model.drape, body->sample.drape) - body->sample.drape.truth).rowwise().norm().mean();
-  return 1e3 * sum / static_cast<double>(bodies.size());
-}
 
 void restore_model(const StageFile& file, DrapeModel& model) {
   DrapeAdam adam;

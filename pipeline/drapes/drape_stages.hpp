@@ -27,7 +27,4 @@ std::string distance_text(const DistanceOptions&, const DrapeLessons&, const Pla
 void add_distance_samples(const DistanceOptions&, const DrapeLessons&, const DrapeBody&, int points, RandomStream&,
                           DistanceSamples&);
 
-// Mean error of the drapes' vertices before any layer [mm].
-double mean_vertex_error(const DrapeModel&, const std::vector<std::unique_ptr<DrapeBody>>&);
-
 }  // namespace selvedge

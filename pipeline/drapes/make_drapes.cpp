@@ -1,7 +1,5 @@
 #include "pipeline/drapes/make_drapes.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "collision/audit/audit.hpp"

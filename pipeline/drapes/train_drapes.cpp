@@ -122,6 +122,8 @@ DrapeTrainSummary train_drapes(const TrainRequest& request) {
   return summary;
 }
 
+namespace {
+
 std::string drape_train_text(const DrapeTrainSummary& s) {
   return fmt::format("{:<20}{}\n{:<20}{} to train on, {} to watch, {} to measure on\n{:<20}{}\n{:<20}{}\n",
                      s.finished ? "trained" : "stopped", s.folder.string(), "drapes", s.training, s.validation, s.test,
@@ -140,6 +142,8 @@ std::string drape_train_json(const DrapeTrainSummary& s) {
                     {"overshoot_mm", row.overshoot.mean}});
   return json_text({{"folder", s.folder.string()}, {"finished", s.finished}, {"seconds", s.seconds}, {"rows", rows}});
 }
+
+}  // namespace
 
 TrainedRun train_as_asked(const TrainRequest& request) {
   return together(request.processes, [&]() -> TrainedRun {

@@ -19,8 +19,6 @@ struct DrapeTrainSummary {
 // measures all of them on the test drapes, with post-processing and edge passes. Writes NAME.h5 and NAME.csv of each
 // stage, table.txt, table.csv, config.yaml and training.html. Stops as `train` does, and continues with `resume`.
 DrapeTrainSummary train_drapes(const TrainRequest&);
-std::string drape_train_text(const DrapeTrainSummary&);
-std::string drape_train_json(const DrapeTrainSummary&);
 
 // Trains what the file asks for: a network of the stepper `learned` (train), or one of drapes. Texts are for people and
 // as one JSON object. The latter is trained by one process: throws Error where there are several.

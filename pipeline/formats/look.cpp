@@ -1,6 +1,5 @@
 #include "pipeline/formats/look.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 #include "pipeline/formats/look_hdf5.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "collision/geometry/error.hpp"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -50,8 +52,8 @@ std::vector<std::string> mtl_files(const std::filesystem::path& folder, const st
   return is_there(line) || std::ranges::none_of(names, is_there) ? std::vector{line} : names;
 }
 
-}  // namespace
-
+// Fills in the colours (Kd) and textures (map_Kd) that the text of a .mtl file gives for materials of these names.
+// Other lines and other materials are passed over. Of a texture with an absolute path the file's name is kept.
 void parse_mtl(std::string_view text, std::vector<LookMaterial>& materials) {
   auto open = materials.end();
   while (!text.empty()) {
@@ -65,6 +67,8 @@ void parse_mtl(std::string_view text, std::vector<LookMaterial>& materials) {
       open->texture = texture_of(words);
   }
 }
+
+}  // namespace
 
 void read_materials(Mesh& mesh, MissingMtl missing) {
   if (mesh.look.materials.empty()) return;

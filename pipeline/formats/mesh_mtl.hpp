@@ -1,16 +1,11 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
-
-// Fills in the colours (Kd) and textures (map_Kd) that the text of a .mtl file gives for materials of these names.
-// Other lines and other materials are passed over. Of a texture with an absolute path the file's name is kept.
-void parse_mtl(std::string_view text, std::vector<LookMaterial>&);
 
 // What becomes of a .mtl file that cannot be read, or does not lie below the mesh's folder.
 enum class MissingMtl { warn, ignore };

@@ -69,9 +69,9 @@ int coincident_vertices(const Points& x) { return lower_elsewhere(same_places(x)
 
 double weld_distance(const Points& x, const Triangles& triangles) { return distance_of(x, surface_of(x, triangles)); }
 
-Welding weldable(const Points& x, const Triangles& triangles, std::optional<double> distance) {
+Welding weldable(const Points& x, const Triangles& triangles) {
   const Surface surface = surface_of(x, triangles);
-  return joining_of(x, surface, distance.value_or(distance_of(x, surface))).count;
+  return joining_of(x, surface, distance_of(x, surface)).count;
 }
 
 std::string unwelded_text(int joined, const std::string& cure) {

@@ -24,8 +24,8 @@ struct Welding {
 // millionth of the bounding box's diagonal where that is more.
 double weld_distance(const Points& x, const Triangles&);
 
-// What `weld` would come to, with the mesh as it is.
-Welding weldable(const Points& x, const Triangles&, std::optional<double> distance = {});
+// What `weld` without a distance would come to.
+Welding weldable(const Points& x, const Triangles&);
 
 // "the seams are not welded: --weld joins 312 vertices". `cure`: what joins them.
 std::string unwelded_text(int joined, const std::string& cure);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "pipeline/host/numbers_json.hpp"
 
@@ -65,6 +66,16 @@ void row_from_json(const nlohmann::ordered_json& json, const Fields& fields, Row
         field.get_to(value);
     }
   });
+}
+
+// The same for the text of a row (as read_row), and for a list of rows.
+template <class Row, class Fields>
+std::optional<Row> read_fields(const std::string& text, const Fields& fields) {
+  return read_row<Row>(text, [&](const auto& json, Row& row) { row_from_json(json, fields, row); });
+}
+template <class Row, class Fields>
+nlohmann::ordered_json rows_to_json(const std::vector<Row>& rows, const Fields& fields) {
+  return json_list(rows, [&](const Row& row) { return row_to_json(row, fields); });
 }
 
 }  // namespace selvedge

@@ -59,7 +59,8 @@ HoodLosses hood_losses_of(HoodJudge& judge, const JudgedFrame& frame) {
   return losses;
 }
 
-Suboptimality suboptimality_of(HoodJudge& judge, const JudgedFrame& frame, int most_evaluations) {
+Suboptimality suboptimality_of(HoodJudge& judge, const JudgedFrame& frame) {
+  constexpr int most_evaluations = 300;
   JudgedInputs judged;
   fill(judge, frame, judged);
   const auto evaluate = [&](const Points& x, Points& gradient) {

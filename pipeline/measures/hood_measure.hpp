@@ -45,6 +45,6 @@ struct Suboptimality {
   double excess = 0;    // E(x) - E(x*) [J]
   double residual = 0;  // at x
 };
-Suboptimality suboptimality_of(HoodJudge&, const JudgedFrame&, int most_evaluations = 300);
+Suboptimality suboptimality_of(HoodJudge&, const JudgedFrame&);
 
 }  // namespace selvedge

@@ -34,27 +34,6 @@ double hop(const Movement& m, double t) {
   return height;
 }
 
-}  // namespace
-
-double smooth_ramp(double t, double width) {
-  if (t <= -1.5 * width) return 0;
-  if (t >= 1.5 * width) return t;
-  static constexpr double signs[] = {1, -3, 3, -1};
-  double sum = 0;
-  for (int j = 0; j < 4; ++j) sum += signs[j] * std::pow(std::max(0.0, t / width + 1.5 - j), 4);
-  return width * sum / 24;
-}
-
-double smooth_between(const std::vector<double>& times, const std::vector<double>& values, double width, double t) {
-  double result = values[0];
-  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-    const double weight =
-        (smooth_ramp(t - times[k], width) - smooth_ramp(t - times[k + 1], width)) / (times[k + 1] - times[k]);
-    result += weight * (values[k + 1] - values[k]);
-  }
-  return result;
-}
-
 Figure figure_at(const Movement& m, double time) {
   Figure figure = m.keys.front().figure;
   for (std::size_t k = 0; k + 1 < m.keys.size(); ++k) {
@@ -90,6 +69,27 @@ std::array<FootPose, 2> feet_at(const Movement& m, double time) {
   }
   for (FootPose& foot : feet) foot.at.y() += hop(m, time);
   return feet;
+}
+
+}  // namespace
+
+double smooth_ramp(double t, double width) {
+  if (t <= -1.5 * width) return 0;
+  if (t >= 1.5 * width) return t;
+  static constexpr double signs[] = {1, -3, 3, -1};
+  double sum = 0;
+  for (int j = 0; j < 4; ++j) sum += signs[j] * std::pow(std::max(0.0, t / width + 1.5 - j), 4);
+  return width * sum / 24;
+}
+
+double smooth_between(const std::vector<double>& times, const std::vector<double>& values, double width, double t) {
+  double result = values[0];
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
+    const double weight =
+        (smooth_ramp(t - times[k], width) - smooth_ramp(t - times[k + 1], width)) / (times[k + 1] - times[k]);
+    result += weight * (values[k + 1] - values[k]);
+  }
+  return result;
 }
 
 std::vector<BodyPose> performed(const Movement& m, const Skeleton& k) {

@@ -50,8 +50,6 @@ double smooth_ramp(double t, double width);
 
 // Linear between keys, averaged three times over `width`: without overshoot, and constant parts stay constant.
 double smooth_between(const std::vector<double>& times, const std::vector<double>& values, double width, double t);
-Figure figure_at(const Movement&, double time);
-std::array<FootPose, 2> feet_at(const Movement&, double time);
 
 // The poses of a movement, at 30 frames per second.
 std::vector<BodyPose> performed(const Movement&, const Skeleton&);

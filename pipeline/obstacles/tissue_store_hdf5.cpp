@@ -14,7 +14,8 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_in_store = std::size_t{25} << 20;  // that a store holds
+constexpr std::size_t most_in_store = std::size_t{25} << 20;        // coordinates
+constexpr std::uintmax_t most_in_folder = std::uintmax_t{1} << 30;  // bytes of all stores
 
 const h5::FileForm tissue_form{"selvedge tissue 1", "soft tissue", "docs/bodies.md"};
 
@@ -81,7 +82,7 @@ void keep_tissue(const Points& skinned, const Points& given, TissueStore& store)
   store.poses[key_of(skinned)] = std::move(pose);
 }
 
-void write_tissue_store(TissueStore& store, std::uintmax_t most) {
+void write_tissue_store(TissueStore& store) {
   if (!std::exchange(store.grown, false)) return;
   std::vector<int> keys, counts, vertices;
   Points x(static_cast<Eigen::Index>(store.numbers / 3), 3);
@@ -102,7 +103,7 @@ void write_tissue_store(TissueStore& store, std::uintmax_t most) {
       h5::write_points(file, "positions", x);
     });
   });
-  keep_within(store.file.parent_path(), most);
+  keep_within(store.file.parent_path(), most_in_folder);
 }
 
 }  // namespace selvedge

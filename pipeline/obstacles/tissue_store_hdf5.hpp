@@ -34,8 +34,7 @@ std::optional<Points> known_tissue(const TissueStore&, const Points& skinned);
 void keep_tissue(const Points& skinned, const Points& given, TissueStore&);
 
 // Writes a store that has grown. Then takes away the files of its folder that were used longest ago, until it has no
-// more than `most` bytes. A folder that cannot be written throws Error.
-constexpr std::uintmax_t most_stored_tissue = std::uintmax_t{1} << 30;
-void write_tissue_store(TissueStore&, std::uintmax_t most = most_stored_tissue);
+// more than 1 GiB. A folder that cannot be written throws Error.
+void write_tissue_store(TissueStore&);
 
 }  // namespace selvedge

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "pipeline/host/html_text.hpp"
 #include "pipeline/plots/plot_frame.hpp"

@@ -4,6 +4,15 @@ namespace selvedge {
 
 using namespace report_table;
 
+namespace {
+
+const std::vector<std::string>& status_names() {
+  static const std::vector<std::string> names{"not_run", "accepted", "rejected"};
+  return names;
+}
+
+}  // namespace
+
 // Trajectories hold the numbers, so that a reason which no step has any more, `overstretched`, keeps its own.
 const std::vector<std::string>& reason_names() {
   static const std::vector<std::string> names{"none",        "not_converged", "not_finite", "penetrating",
@@ -15,11 +24,6 @@ const std::vector<std::string>& verdict_names() {
   static const std::vector<std::string> names{
       "none",     "admitted",   "refined",       "no_history",    "tangled",     "waiting",    "too_slow",
       "not_made", "not_finite", "moved_too_far", "overstretched", "energy_gain", "unbalanced", "penetrating"};
-  return names;
-}
-
-const std::vector<std::string>& status_names() {
-  static const std::vector<std::string> names{"not_run", "accepted", "rejected"};
   return names;
 }
 
@@ -154,7 +158,7 @@ BoundFields<StepReport> own_fields() {
             {{"untangling_passes", Over::sum}}),
       field(
           "out_of_newton", &R::out_of_newton, "",
-          "1 if [the budget](overview.md#recovery-from-a-tangle) of Newton iterations ran out; later solves are rough",
+          "1 if [the budget](overview.md#budgets) of Newton iterations ran out; later solves are rough",
           {{"out_of_newton_frames", Over::frames}}, Page::yes),
       field("out_of_untangling", &R::out_of_untangling, "",
             "1 if the budget of untangling passes ran out; cloth that is still tangled waits for the next frame",

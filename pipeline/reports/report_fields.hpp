@@ -19,7 +19,6 @@ const BoundFields<StepReport>& report_fields();  // with those of its parts
 
 // Names of the enumerators, in order.
 const std::vector<std::string>& reason_names();
-const std::vector<std::string>& status_names();
 const std::vector<std::string>& verdict_names();
 
 }  // namespace selvedge

@@ -8,6 +8,7 @@
 #include "collision/geometry/parallel.hpp"
 #include "collision/geometry/stop_scope.hpp"
 #include "collision/geometry/stopwatch.hpp"
+#include "physics/frame/make_frame.hpp"
 
 namespace selvedge {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "physics/frame/make_frame.hpp"
+#include "physics/frame/frame_audits.hpp"
 #include "pipeline/run/arrangement.hpp"
 
 namespace selvedge {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "collision/geometry/stopwatch.hpp"
+#include "collision/geometry/surface.hpp"
 #include "collision/search/intersections.hpp"
 #include "collision/search/obstacle.hpp"
 
@@ -16,6 +17,12 @@ namespace {
 
 constexpr double layer_length = 0.12, layer_gap = 0.004;
 constexpr int our_repeats = 15, fcl_repeats = 3;
+
+struct DetectionShape {
+  std::string name;
+  Triangles triangles;
+  Points x;
+};
 
 DetectionShape shape(const std::string& name, int n, const std::function<Vec3(double, double)>& place) {
   DetectionShape s{name, Triangles(2 * n * n, 3), Points((n + 1) * (n + 1), 3)};
@@ -49,6 +56,13 @@ Vec3 pile(double u, double v, double wave) {
     p += Vec3(direction * radius * std::sin(turn), radius - radius * std::cos(turn), 0);
   }
   return p + Vec3(0.01 * std::sin(9 * v + 2), 0.02 * std::sin(7 * v) + wave * std::sin(90 * u + 31 * v), 0);
+}
+
+// Shapes of n x n squares: `drape`, a sheet over a ball with hanging folds; `pile`, eight layers 4 mm apart with a
+// crease between each two; `crossing`, the same with waves in which the layers pass through each other.
+std::vector<DetectionShape> detection_shapes(int n) {
+  return {shape("drape", n, drape), shape("pile", n, [](double u, double v) { return pile(u, v, 0.0004); }),
+          shape("crossing", n, [](double u, double v) { return pile(u, v, 0.003); })};
 }
 
 template <class Run>
@@ -88,14 +102,9 @@ DetectionTiming time_shape(const DetectionShape& s) {
 
 }  // namespace
 
-std::vector<DetectionShape> detection_shapes(int n) {
-  return {shape("drape", n, drape), shape("pile", n, [](double u, double v) { return pile(u, v, 0.0004); }),
-          shape("crossing", n, [](double u, double v) { return pile(u, v, 0.003); })};
-}
-
-std::vector<DetectionTiming> time_detection(const std::vector<int>& sizes) {
+std::vector<DetectionTiming> time_detection() {
   std::vector<DetectionTiming> timings;
-  for (const int n : sizes)
+  for (const int n : {100, 200})
     for (const DetectionShape& s : detection_shapes(n)) timings.push_back(time_shape(s));
   return timings;
 }

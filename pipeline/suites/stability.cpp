@@ -221,15 +221,12 @@ std::vector<StabilityRow> stability(const StabilityRequest& request) {
   const CellList list = stability_cells(request);
   for (std::size_t k = 0; k < list.names.size(); ++k) list.describe(k);  // errors before minutes of work
   std::vector<StabilityRow> rows;
-  do_cells(list, request.out, {request.log, request.stop}, [&](const DoneCell& done) {
-    std::optional<StabilityRow> row = read_stability_row(done.record.result.row);
-    if (!row) return;
-    row->kept = done.kept;
-    show_run(request.out, done.record.cell);
-    if (request.log) *request.log << log_line(*row) << std::flush;
-    rows.push_back(std::move(*row));
+  const auto show = [&](const StabilityRow& row, const std::string& cell) {
+    show_run(request.out, cell);
+    if (request.log) *request.log << log_line(row) << std::flush;
     write_tables(request.out, rows);
-  });
+  };
+  do_rows(list, request.out, {request.log, request.stop}, read_stability_row, show, rows);
   return rows;
 }
 

@@ -10,8 +10,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // The fields of a row in its JSON.
 constexpr auto stability_fields = [](auto& r, const auto& visit) {
   visit("case", r.name);
@@ -42,8 +40,6 @@ constexpr auto stability_fields = [](auto& r, const auto& visit) {
   visit("told", r.told);
   visit("failures", r.failures);
 };
-
-Json stability_to_json(const StabilityRow& row) { return row_to_json(row, stability_fields); }
 
 double grown(const StabilityRow& row) { return row.energy > 0 ? 100 * row.unaccounted / row.energy : 0; }
 
@@ -92,22 +88,21 @@ std::string stability_markdown(const std::vector<StabilityRow>& rows) {
   return text;
 }
 
-std::string stability_row_json(const StabilityRow& row) { return json_text(stability_to_json(row)); }
+std::string stability_row_json(const StabilityRow& row) { return json_text(row_to_json(row, stability_fields)); }
 
 std::optional<StabilityRow> read_stability_row(const std::string& text) {
-  return read_row<StabilityRow>(
-      text, [](const Json& json, StabilityRow& row) { row_from_json(json, stability_fields, row); });
+  return read_fields<StabilityRow>(text, stability_fields);
 }
 
 std::string stability_csv(const std::vector<StabilityRow>& rows) {
-  return csv_of_json(json_text(json_list(rows, stability_to_json)));
+  return csv_of_json(json_text(rows_to_json(rows, stability_fields)));
 }
 
 std::string stability_json(const std::vector<StabilityRow>& rows) {
   return json_text({{"program_version", program_version()},
                     {"passed", failed(rows) == 0},
                     {"seconds", seconds(rows)},
-                    {"runs", json_list(rows, stability_to_json)}});
+                    {"runs", rows_to_json(rows, stability_fields)}});
 }
 
 }  // namespace selvedge

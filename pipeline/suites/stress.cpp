@@ -219,15 +219,12 @@ std::vector<StressRow> stress(const StressRequest& request) {
   const CellList list = stress_cells(request);
   for (std::size_t k = 0; k < list.names.size(); ++k) list.describe(k);  // errors before hours of work
   std::vector<StressRow> rows;
-  do_cells(list, request.out, {request.log, request.stop}, [&](const DoneCell& done) {
-    std::optional<StressRow> row = read_stress_row(done.record.result.row);
-    if (!row) return;
-    row->kept = done.kept;
-    show_run(request.out, *row, done.record.cell);
-    if (request.log) *request.log << log_line(*row, request.repeats) << std::flush;
-    rows.push_back(std::move(*row));
+  const auto show = [&](const StressRow& row, const std::string& cell) {
+    show_run(request.out, row, cell);
+    if (request.log) *request.log << log_line(row, request.repeats) << std::flush;
     write_tables(request.out, rows);
-  });
+  };
+  do_rows(list, request.out, {request.log, request.stop}, read_stress_row, show, rows);
   return rows;
 }
 

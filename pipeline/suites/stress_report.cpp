@@ -41,8 +41,6 @@ constexpr auto stress_fields = [](auto& r, const auto& visit) {
   visit("failures", r.failures);
 };
 
-Json stress_to_json(const StressRow& row) { return row_to_json(row, stress_fields); }
-
 // Rows of one scene lie together.
 template <class Each>
 void for_each_scene(const std::vector<StressRow>& rows, const Each& each) {
@@ -64,10 +62,10 @@ std::string text_row(const StressRow& r) {
 
 }  // namespace
 
-std::string stress_row_json(const StressRow& row) { return json_text(stress_to_json(row)); }
+std::string stress_row_json(const StressRow& row) { return json_text(row_to_json(row, stress_fields)); }
 
 std::optional<StressRow> read_stress_row(const std::string& text) {
-  return read_row<StressRow>(text, [](const Json& json, StressRow& row) { row_from_json(json, stress_fields, row); });
+  return read_fields<StressRow>(text, stress_fields);
 }
 
 std::string stress_json(const std::vector<StressRow>& rows) {
@@ -79,11 +77,11 @@ std::string stress_json(const std::vector<StressRow>& rows) {
   return json_text({{"program_version", program_version()},
                     {"passed", failed(rows) == 0},
                     {"scenes", scenes},
-                    {"repeats", json_list(rows, stress_to_json)}});
+                    {"repeats", rows_to_json(rows, stress_fields)}});
 }
 
 std::string stress_csv(const std::vector<StressRow>& rows) {
-  return csv_of_json(json_text(json_list(rows, stress_to_json)));
+  return csv_of_json(json_text(rows_to_json(rows, stress_fields)));
 }
 
 std::string stress_table(const std::vector<StressRow>& rows) {

@@ -264,14 +264,11 @@ CellList wardrobe_cells(const WardrobeRequest& request) {
 std::vector<WardrobeRow> wardrobe(const WardrobeRequest& request) {
   const auto work = std::make_shared<WardrobeWork>(read_work(request));
   std::vector<WardrobeRow> rows;
-  const bool finished = do_cells(list_of(work), request.out, {request.log, request.stop}, [&](const DoneCell& done) {
-    std::optional<WardrobeRow> row = read_wardrobe_row(done.record.result.row);
-    if (!row) return;
-    row->kept = done.kept;
-    show_run(request.out, *row, done.record.cell);
-    if (request.log) *request.log << log_line(*row) << std::flush;
-    rows.push_back(std::move(*row));
-  });
+  const auto show = [&](const WardrobeRow& row, const std::string& cell) {
+    show_run(request.out, row, cell);
+    if (request.log) *request.log << log_line(row) << std::flush;
+  };
+  const bool finished = do_rows(list_of(work), request.out, {request.log, request.stop}, read_wardrobe_row, show, rows);
   if (finished) write_tables(*work, request.out, rows);
   return rows;
 }

@@ -11,8 +11,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // The fields of a row in its JSON.
 constexpr auto wardrobe_fields = [](auto& r, const auto& visit) {
   visit("wear", r.wear);
@@ -33,25 +31,22 @@ constexpr auto wardrobe_fields = [](auto& r, const auto& visit) {
   visit("failures", r.failures);
 };
 
-Json wardrobe_to_json(const WardrobeRow& row) { return row_to_json(row, wardrobe_fields); }
-
 }  // namespace
 
-std::string wardrobe_row_json(const WardrobeRow& row) { return json_text(wardrobe_to_json(row)); }
+std::string wardrobe_row_json(const WardrobeRow& row) { return json_text(row_to_json(row, wardrobe_fields)); }
 
 std::optional<WardrobeRow> read_wardrobe_row(const std::string& text) {
-  return read_row<WardrobeRow>(text,
-                               [](const Json& json, WardrobeRow& row) { row_from_json(json, wardrobe_fields, row); });
+  return read_fields<WardrobeRow>(text, wardrobe_fields);
 }
 
 std::string wardrobe_json(const std::vector<WardrobeRow>& rows) {
   return json_text({{"program_version", program_version()},
                     {"passed", std::ranges::all_of(rows, &WardrobeRow::passed)},
-                    {"rows", json_list(rows, wardrobe_to_json)}});
+                    {"rows", rows_to_json(rows, wardrobe_fields)}});
 }
 
 std::string wardrobe_csv(const std::vector<WardrobeRow>& rows) {
-  return csv_of_json(json_text(json_list(rows, wardrobe_to_json)));
+  return csv_of_json(json_text(rows_to_json(rows, wardrobe_fields)));
 }
 
 std::string wardrobe_table(const std::vector<WardrobeRow>& rows) {

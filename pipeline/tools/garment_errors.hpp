@@ -3,7 +3,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "collision/distance/signed_distance.hpp"
 #include "collision/geometry/adjacency.hpp"

@@ -5,7 +5,7 @@
 #include "learned/graph/elastic_motion.hpp"
 #include "learned/losses/force_input.hpp"
 #include "learned/steppers/learned_state.hpp"
-#include "physics/steppers/carried_stepper.hpp"
+#include "physics/steppers/carried_guess.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,9 +1,7 @@
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
-#include <span>
 #include <sstream>
 
 #include <fmt/format.h>

@@ -139,25 +139,6 @@ bool names_any(const std::vector<std::string>& patterns, const std::string& name
   return std::ranges::any_of(patterns, [&](const std::string& pattern) { return matches(pattern, name); });
 }
 
-}  // namespace
-
-std::string split_name(Split split) {
-  return split == Split::training ? "training" : split == Split::validation ? "validation" : "test";
-}
-
-const Options<SplitOptions>& split_options() {
-  using O = SplitOptions;
-  static const Options<O> table(
-      "split",
-      "What of `people` is held out: names of people, of what they wear, or of clips. `*` stands for any characters. "
-      "The program's own garments and clips have their own split (configs/outfits.yaml, configs/clips.yaml).",
-      {path("file", &O::file, "YAML file with the lists `validation` and `test`, relative to this file."),
-       texts("validation", &O::validation, "Names that are held out for choosing between networks."),
-       texts("test", &O::test, "Names that are held out for the last evaluation.")},
-      "file");
-  return table;
-}
-
 const Section& person_clip_section() {
   static const Section section = [] {
     Section made{
@@ -183,6 +164,25 @@ const Section& wear_section() {
                              {text("name", "Name of it. Default: those of its garments."), weight_key("it"),
                               needed(sections("garments", garment_section(), "",
                                               "What is worn, from the body outward, as `garment` of a scene."))}};
+  return table;
+}
+
+}  // namespace
+
+std::string split_name(Split split) {
+  return split == Split::training ? "training" : split == Split::validation ? "validation" : "test";
+}
+
+const Options<SplitOptions>& split_options() {
+  using O = SplitOptions;
+  static const Options<O> table(
+      "split",
+      "What of `people` is held out: names of people, of what they wear, or of clips. `*` stands for any characters. "
+      "The program's own garments and clips have their own split (configs/outfits.yaml, configs/clips.yaml).",
+      {path("file", &O::file, "YAML file with the lists `validation` and `test`, relative to this file."),
+       texts("validation", &O::validation, "Names that are held out for choosing between networks."),
+       texts("test", &O::test, "Names that are held out for the last evaluation.")},
+      "file");
   return table;
 }
 

@@ -22,10 +22,8 @@ struct SplitOptions {
 
 const Options<SplitOptions>& split_options();
 
-// The tables of a person: a body as in a scene, clips, and garments to wear.
+// The keys of a person: a body as in a scene, clips, and garments to wear.
 const Section& person_section();
-const Section& person_clip_section();
-const Section& wear_section();
 
 // Paths of a training file or of its base: absolute paths stay absolute, others become relative to the folder of the
 // training file, which is absolute.

@@ -244,6 +244,18 @@ constexpr int many_pairs = 20;  // of a start that counts as tangled (Grigorev e
 constexpr double least_noise = 1e-3, most_noise = 1e-2;  // of a start with strong noise [m]
 constexpr int most_attempts = 8;                         // to find such a start
 
+// A material drawn over the ranges of the authors' training (their configurations): density and lambda uniform, mu and
+// bending by their logarithms.
+VertexMaterial random_material(RandomStream& random) {
+  constexpr double thickness = 4.7e-4;  // [m], of the authors
+  VertexMaterial material;
+  material.density = random.between(0.0434, 0.7);
+  material.lame_mu = thickness * std::exp(random.between(std::log(15909.0), std::log(63636.0)));
+  material.lame_lambda = thickness * random.between(3535.41, 93333.74);
+  material.bending = std::exp(random.between(std::log(6.3708e-8), std::log(1.31397e-3)));
+  return material;
+}
+
 }  // namespace
 
 RollRequest tangled_place(RollMaker& maker, const RollRequest& asked, int& pairs) {
@@ -305,16 +317,6 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
     request.still = false;
   }
   return request;
-}
-
-VertexMaterial random_material(RandomStream& random) {
-  constexpr double thickness = 4.7e-4;  // [m], of the authors
-  VertexMaterial material;
-  material.density = random.between(0.0434, 0.7);
-  material.lame_mu = thickness * std::exp(random.between(std::log(15909.0), std::log(63636.0)));
-  material.lame_lambda = thickness * random.between(3535.41, 93333.74);
-  material.bending = std::exp(random.between(std::log(6.3708e-8), std::log(1.31397e-3)));
-  return material;
 }
 
 std::vector<MaterialDraw> drawn_materials(const RollMaker& maker, const RollRequest& request) {

@@ -86,10 +86,6 @@ Roll make_roll(RollMaker&, const RollRequest&);
 // it is `asked`.
 RollRequest tangled_place(RollMaker&, const RollRequest& asked, int& pairs);
 
-// A material drawn over the ranges of the authors' training (their configurations): density and lambda uniform, mu and
-// bending by their logarithms.
-VertexMaterial random_material(RandomStream&);
-
 // The materials of the roll-out, one per garment.
 std::vector<MaterialDraw> drawn_materials(const RollMaker&, const RollRequest&);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
+#include "collision/search/intersections.hpp"
 #include "learned/graph/integration.hpp"
 #include "learned/graph/nearest_faces.hpp"
 #include "learned/losses/cloth_losses.hpp"

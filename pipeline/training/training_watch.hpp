@@ -1,6 +1,5 @@
 #pragma once
 
-#include "collision/search/intersections.hpp"
 #include "pipeline/training/trainer.hpp"
 
 namespace selvedge {

@@ -123,7 +123,8 @@ function markMeshes(geometry, most) {
       new THREE.MeshBasicMaterial({...red, transparent: true, opacity: 0.45, depthTest: false, depthWrite: false}));
   const edges = new THREE.Mesh(
       marks,
-      new THREE.MeshBasicMaterial({color: 0xffffff, wireframe: true, transparent: true, opacity: 0.8, depthTest: false}));
+      new THREE.MeshBasicMaterial(
+          {color: 0xffffff, wireframe: true, transparent: true, opacity: 0.8, depthTest: false}));
   hidden.renderOrder = 2;
   edges.renderOrder = 3;
   return [seen, hidden, edges];

@@ -13,7 +13,7 @@ function readOptions() {
   };
 }
 
-// Marks under the slider: frames with intersecting pairs in red, frames of a fall-back stepper in amber and half as high.
+// Marks under the slider: frames with intersecting pairs in red; frames of a fall-back stepper in amber, half as high.
 function drawTicks(canvas, runs, timeline) {
   const ratio = Math.min(window.devicePixelRatio || 1, 2), frames = timeline.length;
   canvas.width = canvas.clientWidth * ratio;

@@ -31,7 +31,8 @@ function bitReader(bytes) {
     at += bits;
     return value;
   };
-  // A Rice code: ones, a zero, k bits; after 24 ones the number itself in 40 bits. 0, 1, 2, 3, ... are 0, -1, 1, -2, ...
+  // A Rice code: ones, a zero, k bits; after 24 ones the number itself in 40 bits. The codes 0, 1, 2, 3, ... stand for
+  // 0, -1, 1, -2, ...
   const signed = (k, scale) => {
     const ones = Math.clz32(~next32());
     let number;

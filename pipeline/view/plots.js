@@ -30,14 +30,70 @@ function chartElement(parent, title, logarithmic) {
   };
 }
 
+// The value of a colour; names that begin with `--` are those of the page's style.
+function colourOf(name) {
+  return name.startsWith("--") ? getComputedStyle(document.documentElement).getPropertyValue(name).trim() : name;
+}
+
+// Lines at round parts of the top, over the whole width.
+function drawLevels(context, levels, {left, right, bottom, top}) {
+  context.strokeStyle = colourOf("--line");
+  context.lineWidth = 1;
+  for (const level of levels) {
+    const at = Math.round(bottom - level * (bottom - top)) + 0.5;
+    context.beginPath();
+    context.moveTo(left, at);
+    context.lineTo(right, at);
+    context.stroke();
+  }
+}
+
+// One curve over the times; `x` and `y` are its places on the canvas. Frames without a value are left out.
+function drawCurve(context, curve, times, x, y, bottom) {
+  context.beginPath();
+  curve.values.forEach((value, f) => {
+    if (value !== null) context.lineTo(x(times[f]), y(value));
+  });
+  context.lineWidth = 1.6;
+  context.lineJoin = "round";
+  context.strokeStyle = colourOf(curve.colour);
+  context.stroke();
+  if (!curve.filled) return;
+  context.lineTo(x(times[times.length - 1]), bottom);
+  context.lineTo(x(times[0]), bottom);
+  context.globalAlpha = 0.13;
+  context.fillStyle = context.strokeStyle;
+  context.fill();
+  context.globalAlpha = 1;
+}
+
+// The line of the shown frame, and a dot on every curve that has a value there.
+function drawCursor(context, curves, frame, at, y, height) {
+  context.strokeStyle = colourOf("--ink");
+  context.globalAlpha = 0.55;
+  context.lineWidth = 1;
+  context.beginPath();
+  context.moveTo(at, 0);
+  context.lineTo(at, height);
+  context.stroke();
+  context.globalAlpha = 1;
+  for (const curve of curves) {
+    const value = curve.values[frame];
+    if (value === null) continue;
+    context.fillStyle = colourOf(curve.colour);
+    context.beginPath();
+    context.arc(at, y(value), 2.6, 0, 7);
+    context.fill();
+  }
+}
+
 // Curves on the common time axis. `log` shows five decades below the top.
 function drawCurves(canvas, curves, run, view) {
   const ratio = Math.min(window.devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight;
   if (!width || !height) return;
   canvas.width = width * ratio;
   canvas.height = height * ratio;
-  const context = canvas.getContext("2d"), style = getComputedStyle(document.documentElement);
-  const colour = (name) => style.getPropertyValue(name).trim();
+  const context = canvas.getContext("2d");
   context.scale(ratio, ratio);
   const left = 1, right = width - 4, top = 4, bottom = height - 4;
   const x = (time) => left + ((right - left) * (time - view.begin)) / (view.end - view.begin || 1);
@@ -45,58 +101,17 @@ function drawCurves(canvas, curves, run, view) {
       view.log ? Math.max(0, 1 + Math.log10(Math.max(value, 1e-30) / view.top) / 5) : value / view.top;
   const y = (value) => bottom - (bottom - top) * Math.min(1, Math.max(0, share(value)));
 
-  context.strokeStyle = colour("--line");
-  context.lineWidth = 1;
-  for (const level of view.log ? [0, 0.2, 0.4, 0.6, 0.8, 1] : [0, 0.5, 1]) {
-    const at = Math.round(bottom - level * (bottom - top)) + 0.5;
-    context.beginPath();
-    context.moveTo(left, at);
-    context.lineTo(right, at);
-    context.stroke();
-  }
-  const time = run.series.time;
-  for (const curve of curves) {
-    context.beginPath();
-    curve.values.forEach((value, f) => {
-      if (value !== null) context.lineTo(x(time[f]), y(value));
-    });
-    context.lineWidth = 1.6;
-    context.lineJoin = "round";
-    context.strokeStyle = curve.colour.startsWith("--") ? colour(curve.colour) : curve.colour;
-    context.stroke();
-    if (curve.filled) {
-      context.lineTo(x(time[time.length - 1]), bottom);
-      context.lineTo(x(time[0]), bottom);
-      context.globalAlpha = 0.13;
-      context.fillStyle = context.strokeStyle;
-      context.fill();
-      context.globalAlpha = 1;
-    }
-  }
-  const cursor = x(time[view.frame]);
-  context.strokeStyle = colour("--ink");
-  context.globalAlpha = 0.55;
-  context.lineWidth = 1;
-  context.beginPath();
-  context.moveTo(cursor, 0);
-  context.lineTo(cursor, height);
-  context.stroke();
-  context.globalAlpha = 1;
-  for (const curve of curves) {
-    const value = curve.values[view.frame];
-    if (value === null) continue;
-    context.fillStyle = curve.colour.startsWith("--") ? colour(curve.colour) : curve.colour;
-    context.beginPath();
-    context.arc(cursor, y(value), 2.6, 0, 7);
-    context.fill();
-  }
-  context.fillStyle = colour("--faint");
+  drawLevels(context, view.log ? [0, 0.2, 0.4, 0.6, 0.8, 1] : [0, 0.5, 1], {left, right, bottom, top});
+  for (const curve of curves) drawCurve(context, curve, run.series.time, x, y, bottom);
+  drawCursor(context, curves, view.frame, x(run.series.time[view.frame]), y, height);
+  context.fillStyle = colourOf("--faint");
   context.font = `10px ${getComputedStyle(document.body).fontFamily}`;
   context.textBaseline = "top";
   context.fillText(view.topText, left + 2, top + 2);
 }
 
-// Gravity is counted from its lowest frame, so that all share one axis that begins at zero. Springs show where there are any.
+// Gravity is counted from its lowest frame, so that all share one axis that begins at zero. Springs are shown where
+// there are any.
 function energyCurves(run) {
   const gravity = run.series.gravity_energy, springs = run.series.spring_energy;
   const lowest = gravity.reduce((low, value) => (value !== null && value < low ? value : low), Infinity);

@@ -58,9 +58,11 @@ function framing(runs) {
   const boxes = run.boxes.map((_, k) => boxAt(k));
   boxes.forEach((box, k) => k && box.isEmpty() && box.copy(boxes[k - 1]));  // nothing is there: the camera waits
   const all = boxes.reduce((sum, box) => sum.union(box), new THREE.Box3());
-  const level = boxes.map((box) => box.getCenter(new THREE.Vector3()).sub(boxes[0].getCenter(new THREE.Vector3())).setY(0));
+  const middles = boxes.map((box) => box.getCenter(new THREE.Vector3()));
+  const level = middles.map((middle) => middle.clone().sub(middles[0]).setY(0));
   const path = smoothed(level, run.drawn.map((f) => run.series.time[f]));
-  const local = boxes.reduce((sum, box, k) => sum.union(box.clone().translate(path[k].clone().negate())), new THREE.Box3());
+  const local = boxes.reduce(
+      (sum, box, k) => sum.union(box.clone().translate(path[k].clone().negate())), new THREE.Box3());
   const follows = sizeOf(all) > 1.3 * sizeOf(local), box = follows ? local : all;
   const sphere = box.getBoundingSphere(new THREE.Sphere()), radius = Math.max(sphere.radius, 1e-3);
   const solid = boundsOf(run.obstacles.flatMap((body) => body.boxes));
@@ -91,7 +93,10 @@ function makeGrid(frame, spacing) {
       strength: {value: 0.15},
     },
     vertexShader: `varying vec3 place;
-      void main() { place = (modelMatrix * vec4(position, 1.0)).xyz; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      void main() {
+        place = (modelMatrix * vec4(position, 1.0)).xyz;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
     fragmentShader: `varying vec3 place; uniform vec3 centre, ink; uniform float reach, spacing, strength;
       float lines(vec2 at, float width) {
         vec2 near = abs(fract(at - 0.5) - 0.5) / (fwidth(at) * width);

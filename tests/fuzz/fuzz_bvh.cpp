@@ -1,6 +1,5 @@
 #include <cstdlib>
 
-#include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 #include "tests/pipeline/fake_skeleton.hpp"

@@ -2,7 +2,6 @@
 
 #include <zip.h>
 
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <map>

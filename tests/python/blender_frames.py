@@ -1,7 +1,7 @@
 """Run by Blender: blender --background --python blender_frames.py -- FOLDER FRAMES FPS.
 
-Imports run.glb, and moves cloth.obj by the point cache cloth.pc2; writes what Blender shows at every frame, in the axes of the
-files, as FOLDER/blender.npz.
+Imports run.glb, and moves cloth.obj by the point cache cloth.pc2; writes what Blender shows at every frame, in the axes
+of the files, as FOLDER/blender.npz.
 """
 
 import pathlib

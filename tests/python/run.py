@@ -25,7 +25,8 @@ def main():
         return 77
     environment = dict(os.environ, PYTHONPATH=str(folder), SELVEDGE_PROGRAM=program)
     tests = pathlib.Path(__file__).resolve().parent
-    return subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", tests], env=environment).returncode
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", tests]
+    return subprocess.run(command, env=environment).returncode
 
 
 sys.exit(main())

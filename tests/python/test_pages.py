@@ -59,7 +59,8 @@ def test_a_run_goes_out_as_alembic(folder):
     program = os.environ.get("SELVEDGE_PROGRAM")
     if not program:
         pytest.skip("SELVEDGE_PROGRAM is not set")
-    subprocess.run([program, "simulate", "scene.yaml", "--out", "out/walk", "--no-view"], check=True, capture_output=True)
+    command = [program, "simulate", "scene.yaml", "--out", "out/walk", "--no-view"]
+    subprocess.run(command, check=True, capture_output=True)
     run_block("docs/python.md", ALEMBIC)
     run = selvedge.read_trajectory("out/walk")
     meshes = selvedge.read_alembic("walk.abc")

@@ -1,4 +1,4 @@
-"""The Python package. SELVEDGE_PROGRAM names the program whose bits a run is compared with; without it that is skipped."""
+"""The Python package. A run is compared with the bits of the program that SELVEDGE_PROGRAM names, if it names one."""
 
 import gc
 import os
@@ -220,7 +220,8 @@ def test_contours():
     y = np.array([[0.4, -0.2, 0.513], [0.6, -0.2, 0.507], [0.51, 0.3, 0.511]])  # hangs through the sheet
     both = np.vstack([x, y]), np.vstack([triangles, [[81, 82, 83]]])
     assert selvedge.contours(x, triangles) == []
-    for found, sheets in ((selvedge.contours(*both), [0, 0]), (selvedge.contours(x, triangles, [(y, [[0, 1, 2]])]), [0, 1])):
+    as_one, as_two = selvedge.contours(*both), selvedge.contours(x, triangles, [(y, [[0, 1, 2]])])
+    for found, sheets in ((as_one, [0, 0]), (as_two, [0, 1])):
         assert len(found) == 1 and not found[0]["closed"]
         assert [side["sheet"] for side in found[0]["sides"]] == sheets
         assert found[0]["points"][:, 1] == pytest.approx(0, abs=1e-12)

@@ -48,7 +48,8 @@ def scene_file(tmp_path):
 
 
 def square(height=0.0, size=1.0):
-    return np.array([[0, height, 0], [0, height, size], [size, height, 0], [size, height, size]]), [[0, 1, 2], [2, 1, 3]]
+    corners = [[0, height, 0], [0, height, size], [size, height, 0], [size, height, size]]
+    return np.array(corners), [[0, 1, 2], [2, 1, 3]]
 
 
 def test_it_steps_a_scene_of_arrays_and_is_told_what_is_there():

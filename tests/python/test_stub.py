@@ -1,4 +1,4 @@
-"""The type stub says what the extension has: the same names, with the same arguments and docstrings in the same order."""
+"""The type stub has the names of the extension, with the same arguments and docstrings in the same order."""
 
 import ast
 import pathlib
@@ -40,7 +40,8 @@ def stub_docs(body):
 
 
 def real_docs(thing):
-    return [signature[1] for signature in thing.__nb_signature__] if hasattr(thing, "__nb_signature__") else [thing.__doc__]
+    signatures = getattr(thing, "__nb_signature__", None)
+    return [thing.__doc__] if signatures is None else [signature[1] for signature in signatures]
 
 
 def public(thing):

@@ -8,7 +8,8 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHIPPED = {
-    file.name: hashlib.sha256(file.read_bytes()).hexdigest()[:8] for file in sorted((ROOT / "configs/weights").glob("*.h5"))
+    file.name: hashlib.sha256(file.read_bytes()).hexdigest()[:8]
+    for file in sorted((ROOT / "configs/weights").glob("*.h5"))
 }
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "docs/results").glob("*.md"))]
 

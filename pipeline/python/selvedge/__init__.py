@@ -1,4 +1,6 @@
-"""Cloth simulation with audited contact: scenes from numpy arrays or scene files. Metres, seconds, kilograms; Y is up."""
+"""Cloth simulation with audited contact. Scenes come from numpy arrays or scene files.
+
+Units are metres, seconds and kilograms; Y is up."""
 
 from __future__ import annotations
 

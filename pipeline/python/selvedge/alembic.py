@@ -35,8 +35,8 @@ def _library():
 
 def read_alembic(file: str | os.PathLike[str]) -> dict[str, AlembicMesh]:
     """The polygon meshes of an Alembic file by their paths in it, such as /sheet/sheetShape. Returns for each what
-    AlembicMesh says. Positions are as the mesh has them: transforms above it are not applied. Raises Error for what is no
-    Alembic file, and for a mesh whose faces change or whose faces name vertices that are not there."""
+    AlembicMesh says. Positions are as the mesh has them: transforms above it are not applied. Raises Error for what is
+    no Alembic file, and for a mesh whose faces change or name vertices that are not there."""
     Abc, _, AbcGeom, _, _ = _library()
     path = pathlib.Path(file)
     if not path.is_file():
@@ -83,9 +83,10 @@ def _mesh(Abc, AbcGeom, mesh, where) -> AlembicMesh:
 def write_alembic(
     file: str | os.PathLike[str], x: npt.ArrayLike, faces: npt.ArrayLike, fps: float, *, name: str = "cloth"
 ) -> None:
-    """Writes one mesh as an Alembic file (Ogawa). x: positions, frames x n x 3 or a list of n x 3 [m], kept as 32-bit floats;
-    faces: m x 3, or a list of lists of vertices, counter-clockwise from their right side; fps: frames a second, the first at
-    time 0; name: of the mesh. The file takes its name when it is whole. Raises Error for arrays that do not fit."""
+    """Writes one mesh as an Alembic file (Ogawa). x: positions, frames x n x 3 or a list of n x 3 [m], kept as 32-bit
+    floats; faces: m x 3, or a list of lists of vertices, counter-clockwise from their right side; fps: frames a second,
+    the first at time 0; name: of the mesh. The file takes its name when it is whole. Raises Error for arrays that do
+    not fit."""
     if not name or "/" in name:
         raise Error(f"name: is {name!r}; give a name without /")
     frames = _frames(x)

@@ -24,8 +24,8 @@ def simulate(
 ) -> int:
     """Steps to that frame (the scene file's by default), or until a step is rejected or the callback, which is called
     with the scene after every frame, returns False. out: a folder in which run.h5 gets the present state and every
-    frame after it, for read_trajectory, export and view; results of an earlier run there are removed. progress: a bar of
-    tqdm; None: if tqdm is installed, in a notebook or on a terminal. Returns the frame that was reached."""
+    frame after it, for read_trajectory, export and view; results of an earlier run there are removed. progress: a bar
+    of tqdm; None: if tqdm is installed, in a notebook or on a terminal. Returns the frame that was reached."""
     try:
         frames = scene.frames if frames is None else operator.index(frames)
     except TypeError:

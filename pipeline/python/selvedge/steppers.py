@@ -61,6 +61,6 @@ class Stepper:
         self.scene = scene
 
     def step(self, start: StepStart, drive: StepDrive, dt: float):
-        """Steps by dt [s]. Returns positions x, n x 3 [m], or (x, v) with velocities [m/s], which are (x - start.x) / dt
-        otherwise. None, and numbers that are not finite, reject the step."""
+        """Steps by dt [s]. Returns positions x, n x 3 [m], or (x, v) with velocities [m/s]; otherwise these are
+        (x - start.x) / dt. None, and numbers that are not finite, reject the step."""
         raise NotImplementedError

@@ -68,13 +68,14 @@ else:
 def read_trajectory(file: Path, frames: slice | None = None, into: Path | None = None) -> Trajectory:
     """A run: its run.h5, or the folder of one; it may still be growing. frames: which, as slice(0, None, 10); None:
     all. into: a file (.npy) that becomes the array x, mapped into memory, for runs that are larger than the memory;
-    run.h5 itself cannot be mapped, since it keeps every frame in a place of its own. Contact forces are then mapped into
-    files beside it: of x.npy x_contact_normal.npy, x_contact_friction.npy and x_contact_pressure.npy.
+    run.h5 itself cannot be mapped, since it keeps every frame in a place of its own. Contact forces are then mapped
+    into files beside it. With x.npy these are x_contact_normal.npy, x_contact_friction.npy and x_contact_pressure.npy.
 
     Returns x, positions, frames x n x 3 of float32 [m]; time, of each frame [s]; fps; triangles, m x 3; rest, n x 3
     [m]; cloths, of each its name, its first vertex and the end of its vertices; pins, vertices; contact_forces,
     where the run has them (run.contact_forces), else None: normal and friction, frames x n x 3 [N], and pressure,
-    frames x n [Pa], of float32, not a number where they are not known; obstacles, of each name, triangles and x, frames x k x 3 [m]; reports, a dict a frame by the names of docs/files.md."""
+    frames x n [Pa], of float32, not a number where they are not known; obstacles, of each its name, its triangles and
+    x, frames x k x 3 [m]; reports, of each frame a dict by the names of docs/files.md."""
     contents = trajectory_contents(file)
     count = contents["frame_count"]
     numbers = list(range(count)) if frames is None else list(range(count))[frames]

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include <limits>
 #include <random>
 
 #include "collision/distance/edge_pass.hpp"

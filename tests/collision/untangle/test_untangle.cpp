@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <numbers>
 
 #include "collision/audit/audit.hpp"
 #include "collision/contour/find_contours.hpp"

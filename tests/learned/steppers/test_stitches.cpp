@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 #include "learned/losses/cloth_losses.hpp"
 #include "learned/losses/force_input.hpp"

@@ -2,8 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "collision/geometry/error.hpp"
-
 namespace selvedge::test_body_part {
 
 using Catch::Matchers::Contains;

@@ -2,7 +2,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/neighbour_scale_hdf5.hpp"
-#include "pipeline/formats/plain_network_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/source_root.hpp"
 

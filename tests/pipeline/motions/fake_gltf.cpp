@@ -1,7 +1,6 @@
 #include "tests/pipeline/motions/fake_gltf.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 
 namespace selvedge::fake {
 namespace {

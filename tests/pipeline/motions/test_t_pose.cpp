@@ -5,7 +5,6 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/mannequin_form.hpp"
-#include "pipeline/motions/clip_procedural.hpp"
 #include "pipeline/shapes/motion.hpp"
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/fake_makehuman.hpp"

@@ -12,7 +12,6 @@
 #include "learned/steppers/learned_stepper.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/run/simulate.hpp"
-#include "pipeline/scene/make_stepper.hpp"
 #include "tests/frame.hpp"
 #include "tests/physics/spoiled_steps.hpp"
 #include "tests/pipeline/files.hpp"

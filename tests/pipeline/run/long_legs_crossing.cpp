@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
 #include "collision/search/intersections.hpp"
-#include "collision/untangle/find_exemption.hpp"
 #include "physics/recovery/recovery.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/prepare.hpp"

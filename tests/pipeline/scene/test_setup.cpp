@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "tests/pipeline/files.hpp"

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 

@@ -4,7 +4,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/tools/check.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"
 #include "tests/pipeline/files.hpp"

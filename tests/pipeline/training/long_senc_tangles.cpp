@@ -1,7 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include <cmath>
-
 #include "learned/graph/integration.hpp"
 #include "learned/losses/volume_loss.hpp"
 #include "pipeline/training/training_watch.hpp"

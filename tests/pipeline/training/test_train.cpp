@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <thread>
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
-#include <limits>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/view/view_data.hpp"
-#include "tests/pipeline/draping_run.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_view {

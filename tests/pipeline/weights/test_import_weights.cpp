@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/weights/published_names.hpp"
 #include "tests/pipeline/fake_checkpoint.hpp"
 #include "tests/pipeline/files.hpp"
 
