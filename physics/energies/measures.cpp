@@ -26,21 +26,29 @@ EnergyTerms energy_terms(const Scene& scene, const StepperTraits& traits) {
   return terms;
 }
 
-Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x, const Points& v,
+Energies energies(const Scene& scene, const EnergyElements& elements, const Points& x, const Points& v,
                   const Vec3& acceleration) {
   Energies energy;
-  energy.kinetic = 0.5 * terms.masses.dot(v.rowwise().squaredNorm());
-  energy.gravity = -terms.masses.dot(x * acceleration);
-  energy.membrane = membrane_energy(terms.materials, terms.membrane, x);
-  if (terms.curvature.flat.nonZeros() > 0) {
-    const Points forces = terms.curvature.flat * x;
+  energy.kinetic = 0.5 * elements.masses.dot(v.rowwise().squaredNorm());
+  energy.gravity = -elements.masses.dot(x * acceleration);
+  energy.membrane = membrane_energy(elements.materials, elements.membrane, x);
+  if (elements.flat.nonZeros() > 0) {
+    const Points forces = elements.flat * x;
     energy.bending += 0.5 * forces.cwiseProduct(x).sum();
   }
-  for (const CurvedVertex& vertex : terms.curvature.curved) energy.bending += curved_energy(vertex, x);
-  for (const Hinge& hinge : terms.hinges) energy.bending += hinge_energy(hinge, x);
+  for (const CurvedVertex& vertex : elements.curved) energy.bending += curved_energy(vertex, x);
+  for (const Hinge& hinge : elements.hinges) energy.bending += hinge_energy(hinge, x);
   for_each_joint_list([&](auto list, const JointKind&) {
     for (const auto& joint : scene.*list) energy.springs += joint_energy(joint, x);
   });
+  return energy;
+}
+
+Energies energies(const Scene& scene, const EnergyTerms& terms, const Points& x, const Points& v,
+                  const Vec3& acceleration) {
+  const EnergyElements elements{terms.masses,         terms.materials,        terms.membrane,
+                                terms.curvature.flat, terms.curvature.curved, terms.hinges};
+  Energies energy = energies(scene, elements, x, v, acceleration);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!terms.with_membrane) energy.membrane = none;
   if (!terms.with_bending) energy.bending = none;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "physics/energies/bending.hpp"
 #include "physics/energies/membrane.hpp"
 
@@ -24,7 +27,17 @@ struct Energies {  // [J]; gravity is -sum m acceleration . x
   double kinetic = 0, gravity = 0, membrane = 0, bending = 0, springs = 0;
   double total() const { return kinetic + gravity + membrane + bending + springs; }
 };
-// x, v: one row for each vertex of the cloth. The second form builds the terms for this one call.
+// The elements that energies are summed over, wherever they are held. Members are as in EnergyTerms.
+struct EnergyElements {
+  const Eigen::VectorXd& masses;
+  const std::vector<Material>& materials;
+  std::span<const MembraneElement> membrane;
+  const SparseMatrix& flat;  // of CurvatureBending
+  std::span<const CurvedVertex> curved;
+  std::span<const Hinge> hinges;
+};
+// x, v: one row for each vertex of the cloth. The last form builds the terms for this one call.
+Energies energies(const Scene&, const EnergyElements&, const Points& x, const Points& v, const Vec3& acceleration);
 Energies energies(const Scene&, const EnergyTerms&, const Points& x, const Points& v, const Vec3& acceleration);
 Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& acceleration);
 

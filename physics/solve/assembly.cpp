@@ -221,6 +221,10 @@ Elastic make_elastic(const Scene& scene) {
   return elastic;
 }
 
+EnergyElements energy_elements(const Elastic& elastic, const Eigen::VectorXd& masses) {
+  return {masses, elastic.materials, elastic.membrane, elastic.flat, elastic.curved, elastic.hinges};
+}
+
 void append_elastic_energies(const Elastic& elastic, const Points& x, std::vector<double>& energies) {
   const int count = element_count(elastic), rows = elastic.flat.rows() > 0 ? static_cast<int>(x.rows()) : 0;
   const std::size_t first = energies.size();

@@ -5,7 +5,7 @@
 #include "collision/geometry/lists.hpp"
 #include "physics/energies/bending.hpp"
 #include "physics/energies/joints.hpp"
-#include "physics/energies/membrane.hpp"
+#include "physics/energies/measures.hpp"
 #include "physics/linear/linear_system.hpp"
 
 namespace selvedge {
@@ -48,6 +48,9 @@ enum class HessianForm { filtered, exact, damping };
 // Appends one sum for each chunk of elements [J]. Their total is the elastic energy; summing differences of two such
 // lists gives a change of energy with little rounding.
 void append_elastic_energies(const Elastic&, const Points& x, std::vector<double>& energies);
+
+// The elements and the masses [kg] that `energies` sums over. Refers to both.
+EnergyElements energy_elements(const Elastic&, const Eigen::VectorXd& masses);
 
 // Overwrites the gradient (n x 3 [N], with Q) and the Hessian of the elements ([N/m], without Q); either may be null.
 void elastic_derivatives(const Elastic&, const Points& x, AssemblyScratch&, Points* gradient, PairBlocks* hessian,

@@ -34,26 +34,33 @@ bool is_driven(const Scene& scene, const State& from, const State& to, const Dri
 EnergyBalance::EnergyBalance(const Scene& scene, const StepperTraits& traits)
     : reduced_(traits.ignores.empty() ? std::nullopt : std::optional<Scene>(without_ignored(scene, traits))),
       scene_(reduced_ ? *reduced_ : scene),
-      terms_(energy_terms(scene_)),
+      own_(make_elastic(scene_)),
+      elastic_(*own_),
+      masses_(lumped_masses(scene_)),
       edge_length_(mean_edge_length(scene_)) {}
+
+EnergyBalance::EnergyBalance(const Scene& scene, const Elastic& elastic)
+    : scene_(scene), elastic_(elastic), masses_(lumped_masses(scene)), edge_length_(mean_edge_length(scene)) {}
 
 // Caches the last result: a step usually starts with the state that the step before ended with.
 Energies EnergyBalance::energies_of(const State& state, const Vec3& acceleration) {
   const bool known = last_.x.rows() == state.x.rows() && last_.v.rows() == state.v.rows() && last_.x == state.x &&
                      last_.v == state.v && last_.acceleration == acceleration;
-  if (!known) last_ = {state.x, state.v, acceleration, energies(scene_, terms_, state.x, state.v, acceleration)};
+  if (!known)
+    last_ = {state.x, state.v, acceleration,
+             energies(scene_, energy_elements(elastic_, masses_), state.x, state.v, acceleration)};
   return last_.energies;
 }
 
 double EnergyBalance::work_of(const State& from, const State& to, const Drive& drive, bool proposed) {
-  if (!work_) work_.emplace(scene_);
+  if (!work_) work_.emplace(scene_, elastic_);
   const Work work = proposed ? work_->of_world(from, to, drive) : (*work_)(from, to, drive);
   return work.pins + work.obstacles + work.wind;
 }
 
 EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, State& to, bool proposed) {
   const Energies before = energies_of(from, drive.acceleration), after = energies_of(to, drive.acceleration);
-  const double gained = gained_before(from), weight = terms_.masses.sum() * std::max(earth, drive.acceleration.norm());
+  const double gained = gained_before(from), weight = masses_.sum() * std::max(earth, drive.acceleration.norm());
   const double unit = std::max(0.0, before.total() - before.gravity - gained) + weight * edge_length_;
   EnergyGain found{.gain = after.total() - before.total(), .tolerated = tolerated_part * unit};
   const bool driven = is_driven(scene_, from, to, drive);

@@ -16,11 +16,13 @@ struct EnergyGain {
 };
 
 // Judges the energy of a scene step by step. Small unexplained gains of several steps are judged together:
-// State::memory holds their sum. Forces that a stepper with these traits ignores are left out. Holds caches, and a
-// reference to the scene.
+// State::memory holds their sum. Holds caches, and a reference to the scene.
 class EnergyBalance {
  public:
+  // Without the forces that a stepper with these traits ignores.
   explicit EnergyBalance(const Scene&, const StepperTraits& = {});
+  // With the scene's elements as the stepper holds them already; refers to them.
+  EnergyBalance(const Scene&, const Elastic&);
   EnergyBalance(const EnergyBalance&) = delete;
   EnergyBalance& operator=(const EnergyBalance&) = delete;
   // Judges an accepted step; positions and velocities must be finite. The memory of `to` gets the sum of unexplained
@@ -37,7 +39,9 @@ class EnergyBalance {
 
   std::optional<Scene> reduced_;  // without the forces that the stepper ignores; absent if it ignores none
   const Scene& scene_;            // that, or the scene itself
-  EnergyTerms terms_;
+  std::optional<Elastic> own_;    // absent where the stepper holds the elements
+  const Elastic& elastic_;        // those, or the stepper's
+  Eigen::VectorXd masses_;        // lumped [kg]
   double edge_length_;
   std::optional<WorkBound> work_;  // made when first needed
   struct Known {

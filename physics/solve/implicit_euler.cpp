@@ -134,6 +134,7 @@ ImplicitEuler::ImplicitEuler(const Scene& scene, const ImplicitEulerOptions& opt
 ImplicitEuler::~ImplicitEuler() = default;
 LinearSolver ImplicitEuler::chosen_solver() const { return impl_->linear.chosen(); }
 const Eigen::VectorXd& ImplicitEuler::masses() const { return impl_->masses; }
+const Elastic& ImplicitEuler::elastic() const { return impl_->elastic; }
 
 double ImplicitEuler::potential(const StepProblem& problem, const Points& x) {
   impl_->start(problem);

@@ -8,6 +8,8 @@
 
 namespace selvedge {
 
+struct Elastic;  // physics/solve/assembly.hpp
+
 // When Newton uses longer steps, exact Hessians and more iterations. Members are described where keys are bound to
 // them: pipeline/scene/config_solver.cpp.
 struct NewtonOptions {
@@ -66,7 +68,8 @@ class ImplicitEuler {
   double potential(const StepProblem&, const Points& x);
   Points gradient(const StepProblem&, const Points& x);  // zero rows at pins [N]
   LinearSolver chosen_solver() const;
-  const Eigen::VectorXd& masses() const;
+  const Eigen::VectorXd& masses() const;  // lumped [kg]
+  const Elastic& elastic() const;         // the elements of the scene
 
  private:
   struct Impl;

@@ -22,11 +22,11 @@ Work& Work::operator+=(const Work& other) {
   return *this;
 }
 
-WorkBound::WorkBound(const Scene& scene)
+WorkBound::WorkBound(const Scene& scene, const Elastic& elastic)
     : scene_(scene),
       world_(make_contact_world(scene.surface, obstacle_surfaces(scene), features_of(scene).self_contact, &scene.rest)),
       search_(world_),
-      elastic_(make_elastic(scene)),
+      elastic_(elastic),
       masses_(lumped_masses(scene)) {}
 
 void WorkBound::unnamed_forces(const State& from, const State& to, const Drive& drive) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "collision/contact/path_pairs.hpp"
-#include "physics/energies/measures.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/solve/assembly.hpp"
 
@@ -28,10 +27,10 @@ struct Work {
 //   pins       |R| of a flight: the cloth goes on as it moved, and pins go where they are driven
 //   obstacles  what holds the vertex at the start, and what brings it to the velocity of the obstacle in the step
 //   wind       the force of the air at the start, times the largest displacement that it can cause
-// Holds caches and a reference to the scene.
+// Holds caches, and references to the scene and its elements.
 class WorkBound {
  public:
-  explicit WorkBound(const Scene&);
+  WorkBound(const Scene&, const Elastic&);
   Work operator()(const State& from, const State& to, const Drive&);
   Work of_world(const State& from, const State& to, const Drive&);
 
@@ -44,7 +43,7 @@ class WorkBound {
   const Scene& scene_;
   ContactWorld world_;
   PairSearch search_;
-  Elastic elastic_;
+  const Elastic& elastic_;
   Eigen::VectorXd masses_;
   Points elastic_before_;
   Eigen::VectorXd unnamed_;    // |R| of every vertex [N]

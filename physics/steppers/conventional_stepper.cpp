@@ -57,7 +57,7 @@ class ConventionalStepper final : public Stepper {
         contact_(scene, options.resolve),
         solve_(scene, options.implicit_euler, options.substep, contact_),
         euler_torque_(scene),
-        energy_(scene),
+        energy_(scene, solve_.solver().elastic()),
         edge_length_(mean_edge_length(scene)),
         traits_{.name = options.name,
                 .past_frames = options.integrator == Integrator::bdf2 || options.guess == FirstGuess::carried ? 1 : 0,

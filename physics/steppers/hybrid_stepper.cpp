@@ -61,7 +61,7 @@ class HybridStepper final : public Stepper {
         options_(options),
         guard_(scene, options.guard),
         contact_(scene),
-        energy_(scene),
+        energy_(scene, guard_.elastic),
         traits_(joint_traits(parts_)),
         audits_(scene),
         clock_(clock_of(parts_)) {}

@@ -59,7 +59,7 @@ class IcmStepper final : public Stepper {
         edge_length_(mean_edge_length(scene)),
         solver_(scene, options.implicit_euler),
         euler_torque_(scene),
-        energy_(scene),
+        energy_(scene, solver_.elastic()),
         self_crossings_(world_) {}
 
   const StepperTraits& traits() const override { return traits_; }

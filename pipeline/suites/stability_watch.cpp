@@ -18,8 +18,9 @@ long count_nonfinite(const Points& points) { return points.size() - points.array
 StabilityWatch::StabilityWatch(const Setup& setup, const State& start, const StepperTraits& stepper)
     : setup_(setup),
       scene_(without_ignored(setup.scene, stepper)),
-      bound_(scene_),
-      terms_(energy_terms(scene_)),
+      elastic_(make_elastic(scene_)),
+      masses_(lumped_masses(scene_)),
+      bound_(scene_, elastic_),
       before_(start) {
   const Vec3 gravity = setup.drive_at(0).acceleration;
   lowest_ = energy(before_, gravity);
@@ -27,7 +28,7 @@ StabilityWatch::StabilityWatch(const Setup& setup, const State& start, const Ste
 
 // Total energy; notes the largest without gravity.
 double StabilityWatch::energy(const State& state, const Vec3& acceleration) {
-  const Energies e = energies(scene_, terms_, state.x, state.v, acceleration);
+  const Energies e = energies(scene_, energy_elements(elastic_, masses_), state.x, state.v, acceleration);
   found_.energy = std::max(found_.energy, e.kinetic + e.membrane + e.bending);
   return e.total();
 }
@@ -52,7 +53,7 @@ void StabilityWatch::operator()(const FrameEvent& event) {
   found_.unaccounted = std::max(found_.unaccounted, left - lowest_);
   lowest_ = std::min(lowest_, left);
   if (state.frame > (1 - end_part) * setup_.run.frames) {
-    end_sum_ += terms_.masses.dot(state.v.rowwise().squaredNorm()) / terms_.masses.sum();
+    end_sum_ += masses_.dot(state.v.rowwise().squaredNorm()) / masses_.sum();
     ++end_frames_;
   }
   before_ = state;

@@ -19,8 +19,9 @@ class StabilityWatch {
 
   const Setup& setup_;
   Scene scene_;  // as the stepper has it
+  Elastic elastic_;
+  Eigen::VectorXd masses_;  // lumped [kg]
   WorkBound bound_;
-  EnergyTerms terms_;
   State before_;
   StabilityMeasures found_;
   double lowest_ = 0;   // of the energy less all work so far [J]

@@ -19,7 +19,8 @@ struct Books {
 // The conventional stepper's energy and the bound on its work over some frames.
 Books books(const World& w, int frames, const std::function<Drive(int frame)>& drive) {
   const auto stepper = make_recovering_conventional_stepper(w.scene, {});
-  WorkBound bound(w.scene);
+  const Elastic elastic = make_elastic(w.scene);
+  WorkBound bound(w.scene, elastic);
   State state = w.state, to;
   const auto energy = [&](const State& s) { return energies(w.scene, s.x, s.v, w.drive.acceleration).total(); };
   Books result;
@@ -132,7 +133,8 @@ TEST_CASE("work: a proposal's own stretch and speed are no work of the world", "
   to.x.col(1).array() += rise;
   to.x.bottomRows(42).col(2).array() += 0.01;  // the cloth is drawn off its pins
   to.v = (to.x - from.x) / dt;
-  WorkBound pinned(w.scene);
+  const Elastic hanging = make_elastic(w.scene);
+  WorkBound pinned(w.scene, hanging);
   CHECK(pinned(from, to, w.drive).pins > 10 * weight * rise);
   CHECK(pinned.of_world(from, to, w.drive).pins < 2 * weight * rise);
 
@@ -144,7 +146,8 @@ TEST_CASE("work: a proposal's own stretch and speed are no work of the world", "
   thrown.time = dt;
   thrown.v.col(1).setConstant(30);
   thrown.x += dt * thrown.v;
-  WorkBound air(blown.scene);
+  const Elastic floating = make_elastic(blown.scene);
+  WorkBound air(blown.scene, floating);
   const double moving = 0.5 * lumped_masses(blown.scene).sum();  // at 1 m/s [J]
   CHECK(air(blown.state, thrown, blown.drive).wind > 10 * moving);
   CHECK(air.of_world(blown.state, thrown, blown.drive).wind < 2 * moving);
@@ -155,14 +158,16 @@ TEST_CASE("work: a proposal's own stretch and speed are no work of the world", "
   thrown.obstacles = pushed.state.obstacles;
   thrown.obstacles[0].col(1).array() += dt;
   thrown.x = pushed.state.x + dt * thrown.v;
-  WorkBound plate(pushed.scene);
+  const Elastic lying = make_elastic(pushed.scene);
+  WorkBound plate(pushed.scene, lying);
   CHECK(plate(pushed.state, thrown, pushed.drive).obstacles > 10 * moving);
   CHECK(plate.of_world(pushed.state, thrown, pushed.drive).obstacles < 4 * moving);
 }
 
 TEST_CASE("work: velocity from nowhere is not covered", "[work]") {
   const World w = make_world(sheet(6, 0.4, 0));
-  WorkBound bound(w.scene);
+  const Elastic elastic = make_elastic(w.scene);
+  WorkBound bound(w.scene, elastic);
   State to = w.state;
   to.time = 1.0 / 60;
   to.v.col(1).setConstant(3);
