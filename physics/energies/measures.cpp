@@ -68,10 +68,14 @@ double root_mean_square(const Points& points) {
   return points.rows() > 0 ? std::sqrt(points.squaredNorm() / static_cast<double>(points.rows())) : 0.0;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene& scene, const Points& x) {
-  Eigen::Matrix<double, Eigen::Dynamic, 2> stretches;
-  stretches.setOnes(scene.surface.triangles.rows(), 2);
-  for (const MembraneElement& element : membrane_elements(scene)) {
+Stretches principal_stretches(const Scene& scene, const Points& x) {
+  return principal_stretches(membrane_elements(scene), scene.surface.triangles.rows(), x);
+}
+
+Stretches principal_stretches(std::span<const MembraneElement> elements, Eigen::Index triangles, const Points& x) {
+  Stretches stretches;
+  stretches.setOnes(triangles, 2);
+  for (const MembraneElement& element : elements) {
     const Mat32 F = deformation_gradient(element, x);
     const double p = F.col(0).squaredNorm(), q = F.col(1).squaredNorm(), r = F.col(0).dot(F.col(1));
     const double largest = std::sqrt(0.5 * (p + q) + std::sqrt(0.25 * (p - q) * (p - q) + r * r));

@@ -45,9 +45,11 @@ Energies energies(const Scene&, const Points& x, const Points& v, const Vec3& ac
 double root_mean_square(const Points&);
 double largest_row(const Points&);  // the longest one's length; 0 without rows
 
-// Principal stretches of every triangle: columns smallest, largest. 1 at rest, and for triangles without
-// rest area.
-Eigen::Matrix<double, Eigen::Dynamic, 2> principal_stretches(const Scene&, const Points& x);
+// Principal stretches of every triangle: columns smallest, largest. 1 at rest, and for triangles without rest area. The
+// second form has the scene's elements already.
+using Stretches = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+Stretches principal_stretches(const Scene&, const Points& x);
+Stretches principal_stretches(std::span<const MembraneElement>, Eigen::Index triangles, const Points& x);
 
 // [kg m/s]
 Vec3 linear_momentum(const Scene&, const Points& v);

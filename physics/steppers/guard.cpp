@@ -112,8 +112,8 @@ void measure_motion(const Guard& guard, const State& from, double dt, const Poin
   m.change_of_motion = std::sqrt(changes / count) / std::max(guard.options.still, std::sqrt(motions / count));
 }
 
-double largest_stretch(const Scene& scene, const Points& x) {
-  const auto stretches = principal_stretches(scene, x);
+double largest_stretch(const Guard& guard, const Points& x) {
+  const Stretches stretches = principal_stretches(guard.elastic.membrane, guard.scene.surface.triangles.rows(), x);
   return stretches.rows() > 0 ? stretches.col(1).maxCoeff() : 1;
 }
 
@@ -179,8 +179,8 @@ Verdict judge_motion(const Guard& guard, const State& from, double dt, const Poi
 }
 
 Verdict judge_stretch(const Guard& guard, const State& from, const Points& x, GuardMeasures& m) {
-  m.stretch_before = largest_stretch(guard.scene, from.x);
-  m.stretch = largest_stretch(guard.scene, x);
+  m.stretch_before = largest_stretch(guard, from.x);
+  m.stretch = largest_stretch(guard, x);
   const double most = std::max(guard.options.stretch, guard.options.stretch_growth * m.stretch_before);
   return m.stretch <= most ? Verdict::admitted : Verdict::overstretched;
 }
@@ -203,8 +203,8 @@ GuardMeasures measure(Guard& guard, const State& from, const Drive& drive, doubl
                       const AskTouching& touching) {
   GuardMeasures m;
   measure_motion(guard, from, dt, x, m);
-  m.stretch_before = largest_stretch(guard.scene, from.x);
-  m.stretch = largest_stretch(guard.scene, x);
+  m.stretch_before = largest_stretch(guard, from.x);
+  m.stretch = largest_stretch(guard, x);
   measure_energy(guard, from, x, m);
   measure_residual(guard, from, drive, dt, x, touching ? touching() : std::vector<char>{}, m);
   return m;

@@ -33,7 +33,7 @@ Frame record_frame(const Scene& scene, const EnergyTerms& terms, const FrameEven
   const Clock::time_point before_audit = Clock::now();
   record_audit(event.report.audit ? *event.report.audit : audit_uncut(scene, event.state), frame);
   frame.report.seconds.audit += seconds_since(before_audit);
-  auto stretches = principal_stretches(scene, x);
+  Stretches stretches = principal_stretches(terms.membrane, scene.surface.triangles.rows(), x);
   // Cut-out triangles follow the body; their stretches do not count.
   for (const int t : event.state.cut_out) stretches.row(t).setOnes();
   if (stretches.rows() > 0) {
