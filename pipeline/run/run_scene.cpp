@@ -110,7 +110,15 @@ void copy_frames(const ResumedRun& resumed, const std::filesystem::path& folder,
   }
 }
 
-void finish(RunSummary& summary, const StepReport& last, int frame) {
+// Completes the summary of a run whose last step ended at `frame`.
+void finish(Recorder& recorder, const StepReport& last, int frame) {
+  RunSummary& summary = recorder.summary;
+  for (WornCloth& one : recorder.worn)
+    if (one.watch.left_in >= 0) summary.slid_off.push_back(std::move(one.watch));
+  summary.outcomes = recorder.outcome.results();
+  const auto& asked = recorder.setup.outcomes;
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    summary.outcome_lines.push_back(outcome_text(asked[k], summary.outcomes[k]));
   const bool rejected = last.status == StepStatus::rejected && last.reason != Reason::stopped;
   summary.end = rejected ? RunEnd::rejected : frame < summary.frames_wanted ? RunEnd::interrupted : RunEnd::finished;
   if (rejected) summary.reason = reason_names().at(static_cast<std::size_t>(last.reason));
@@ -139,7 +147,10 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   ResumedRun resumed;
   if (!start) resumed = read_resumed(request.out, setup, stepper.traits(), run_inputs(setup));
   State state = start ? start->state : resumed.state;
-  start ? remove_results(request.out) : remove_made_of_frames(request.out);
+  if (start)
+    remove_results(request.out);
+  else
+    remove_made_of_frames(request.out);
   const RunInputs inputs = start ? run_inputs(setup) : resumed.inputs;
   write_file(request.out / "config.yaml", config_in(request.out, setup));
 
@@ -174,12 +185,7 @@ RunSummary run_from(const Start* start, const Setup& setup, Stepper& stepper, co
   if (request.progress) request.progress->end();
 
   recorder.writer.close();
-  for (WornCloth& one : recorder.worn)
-    if (one.watch.left_in >= 0) summary.slid_off.push_back(std::move(one.watch));
-  summary.outcomes = recorder.outcome.results();
-  for (std::size_t k = 0; k < setup.outcomes.size(); ++k)
-    summary.outcome_lines.push_back(outcome_text(setup.outcomes[k], summary.outcomes[k]));
-  finish(summary, last, state.frame);
+  finish(recorder, last, state.frame);
   if (summary.end == RunEnd::finished) remove_file(saved);
   write_xdmf(file);
   write_file(request.out / "summary.json", summary_json(summary));

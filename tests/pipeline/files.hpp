@@ -20,6 +20,13 @@ inline std::string whole(const std::filesystem::path& path) {
   return text.str();
 }
 
+// One text a line.
+inline std::string lines(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += text + "\n";
+  return all;
+}
+
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // The largest distance between rows of the same number.

@@ -10,11 +10,13 @@
 #include "collision/exact/inside.hpp"
 #include "collision/exact/triangle_pair.hpp"
 #include "tests/collision/brute_force.hpp"
+#include "tests/collision/tangles.hpp"
 #include "tests/threads.hpp"
 
 namespace selvedge::test_audit {
 
 using testing::Pairs;
+using testing::shake;
 
 namespace {
 
@@ -88,12 +90,6 @@ Mesh ball(int n, double radius) {
   return mesh;
 }
 
-void crumple(Points& x, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> push(-size, size);
-  for (double& coordinate : x.reshaped()) coordinate += push(random);
-}
-
 // By the solver's test: the audit asks another.
 Pairs brute_self(const Mesh& mesh) { return testing::brute_self(mesh, triangles_meet); }
 Pairs brute_cross(const Mesh& a, const Mesh& b) { return testing::brute_cross(a, b, triangles_meet); }
@@ -150,8 +146,8 @@ TEST_CASE("audit: obstacle triangles are numbered on end", "[audit]") {
 TEST_CASE("audit: crumpled sheets agree with brute force", "[audit]") {
   for (unsigned seed = 0; seed < 4; ++seed) {
     Mesh cloth = grid(14, Vec3::Zero(), ex, ez), body = grid(5, {0.3, 0.1, 0.2}, 2.3 * ex, 2.3 * ez);
-    crumple(cloth.x, 0.9, seed);
-    crumple(body.x, 0.3, seed + 10);
+    shake(cloth.x, 0.9, seed);
+    shake(body.x, 0.3, seed + 10);
     const Audit found = audit(cloth, {&body});
     CHECK(found.self_pairs == brute_self(cloth));
     CHECK(found.obstacle_pairs == brute_cross(cloth, body));
@@ -165,7 +161,7 @@ TEST_CASE("audit: few large triangles against many small ones", "[audit]") {
   const Mesh ground = grid(1, {-50, 0, -50}, 100 * ex, 100 * ez);
   CHECK(audit(cloth, {&ground}).intersecting_pairs() == 0);
   CHECK(min_gap(cloth, {&ground}, 0.1) == Approx(0.02));
-  crumple(cloth.x, 0.021, 1);
+  shake(cloth.x, 0.021, 1);
   CHECK(audit(cloth, {&ground}).obstacle_pairs == brute_cross(cloth, ground));
 }
 
@@ -272,8 +268,8 @@ TEST_CASE("audit: what is inside, by the audit's test and by the solver's", "[au
     // pass through themselves.
     Mesh body = round % 3 == 0 ? lattice_cube(4) : ball(6, 2), cloth = grid(6, {-1, 2, -1}, ex, ez);
     const Vec3 shift = round % 2 ? Vec3(1e7, -1e6, 1e5) : Vec3::Zero();
-    if (round % 3 == 2) crumple(body.x, 0.7, round);
-    if (round % 5) crumple(cloth.x, 0.1 * (round % 5), round);
+    if (round % 3 == 2) shake(body.x, 0.7, round);
+    if (round % 5) shake(cloth.x, 0.1 * (round % 5), round);
     if (round % 5) cloth.x.rowwise() += 0.5 * Vec3(place(random), place(random), place(random)).transpose();
     if (round % 4 == 1) cloth = ball(3, 0.2 * (round % 7));
     body.x.rowwise() += shift.transpose();
@@ -329,7 +325,7 @@ TEST_CASE("audit: nothing to audit", "[audit]") {
 
 TEST_CASE("audit: the same for any number of threads", "[audit][threads]") {
   Mesh cloth = grid(30, Vec3::Zero(), ex, ez), body = ball(8, 6);
-  crumple(cloth.x, 0.6, 5);
+  shake(cloth.x, 0.6, 5);
   std::vector<Audit> found;
   std::vector<double> gaps;
   const Mesh apart = grid(30, {0.1, 0.31, 0.2}, ex, ez);

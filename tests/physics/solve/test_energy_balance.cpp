@@ -1,5 +1,7 @@
 #include "physics/solve/energy_balance.hpp"
 
+#include <cmath>
+
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_energy_balance {
@@ -65,6 +67,28 @@ TEST_CASE("energy balance: what pins do is no gain from nowhere", "[energy_balan
   CHECK(lifted.work > lifted.gain);
   CHECK_FALSE(lifted.from_nowhere());
   CHECK(lifted.nowhere == 0);
+}
+
+TEST_CASE("energy balance: elements that a stepper holds give the same bits as its own", "[energy_balance]") {
+  for (const BendingModel bending : {BendingModel::curvature, BendingModel::hinge})
+    for (const bool flat : {true, false}) {
+      World w = make_world(sheet(6, 0.4, 0));
+      w.scene.cloths[0].material.bending_model = bending;
+      w.scene.rest_is_flat = flat;
+      w.scene.springs = {{0, 48, 0.3, 10}};
+      w.scene.pins = {0};
+      const Elastic elastic = make_elastic(w.scene);
+      State to = moved(w, 0.1, 1);
+      for (int i = 0; i < to.x.rows(); ++i) to.x.row(i) += 0.02 * std::sin(5.0 * i) * Vec3(1, 2, 3).transpose();
+      State again = to;
+      const EnergyGain own = EnergyBalance(w.scene)(w.state, w.drive, to);
+      const EnergyGain shared = EnergyBalance(w.scene, elastic)(w.state, w.drive, again);
+      CHECK(own.work > 0);
+      CHECK(own.gain == shared.gain);
+      CHECK(own.work == shared.work);
+      CHECK(own.nowhere == shared.nowhere);
+      CHECK(own.tolerated == shared.tolerated);
+    }
 }
 
 TEST_CASE("energy balance: the doubt stands on accepted steps, beside other doubts", "[energy_balance]") {

@@ -10,7 +10,7 @@
 
 #include "pipeline/run/prepare.hpp"
 #include "tests/pipeline/fake_garment.hpp"
-#include "tests/pipeline/fake_run.hpp"
+#include "tests/pipeline/files.hpp"
 #include "tests/program.hpp"
 #include "tests/source_root.hpp"
 
@@ -23,18 +23,13 @@ struct Ended {
   std::string out, err;
 };
 
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 Ended selvedge_program(const fake::Folder& folder, const std::string& arguments, const std::string& before = "",
                        const std::string& into = "") {
   const std::filesystem::path out = into.empty() ? folder.path / "stdout" : std::filesystem::path(into),
                               err = folder.path / "stderr";
   const std::string command = before + tested_program() + " " + arguments + " >" + out.string() + " 2>" + err.string();
   const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, into.empty() ? read_text(out) : "", read_text(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, into.empty() ? fake::whole(out) : "", fake::whole(err)};
 }
 
 void write_scene(const fake::Folder& folder) {
@@ -225,7 +220,7 @@ TEST_CASE("a run that is interrupted, hung up or killed is resumed to the same b
   if (signal != SIGKILL) {
     REQUIRE(WEXITSTATUS(status) == 1);
     REQUIRE(TrajectoryReader(out + "/run.h5").closed());
-    REQUIRE(nlohmann::json::parse(read_text(out + "/summary.json"))["end"] == "interrupted");
+    REQUIRE(nlohmann::json::parse(fake::whole(out + "/summary.json"))["end"] == "interrupted");
   }
 
   REQUIRE(selvedge_program(folder, arguments + out + " --resume").status == 0);

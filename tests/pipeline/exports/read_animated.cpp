@@ -8,15 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "tests/pipeline/files.hpp"
+
 namespace selvedge::read_animated {
 namespace {
 
 using nlohmann::json;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 template <class Value>
 Value value_at(const std::string& bytes, std::size_t at, bool big_endian = false) {
@@ -79,7 +76,7 @@ struct Gltf {
 };
 
 Gltf open_glb(const std::filesystem::path& path) {
-  const std::string all = bytes_of(path);
+  const std::string all = fake::whole(path);
   if (all.substr(0, 4) != "glTF" || value_at<std::uint32_t>(all, 4) != 2) throw std::runtime_error("no glTF 2");
   if (value_at<std::uint32_t>(all, 8) != all.size()) throw std::runtime_error("the length is not the file's");
   const std::size_t text = value_at<std::uint32_t>(all, 12), bytes = value_at<std::uint32_t>(all, 20 + text);
@@ -142,14 +139,14 @@ PointsF points_of(const std::string& text) {
 }  // namespace
 
 Surface pc2(const std::filesystem::path& path) {
-  const std::string bytes = bytes_of(path);
+  const std::string bytes = fake::whole(path);
   std::vector<double> times;
   for (int i = 0; i < value_at<std::int32_t>(bytes, 28); ++i) times.push_back(i);
   return cache(bytes, 32, value_at<std::int32_t>(bytes, 16), times, false);
 }
 
 Surface mdd(const std::filesystem::path& path) {
-  const std::string bytes = bytes_of(path);
+  const std::string bytes = fake::whole(path);
   const int frames = value_at<std::int32_t>(bytes, 0, true);
   std::vector<double> times;
   for (int i = 0; i < frames; ++i) times.push_back(value_at<float>(bytes, 8 + 4 * i, true));

@@ -27,12 +27,6 @@ Setup with(const Folder& folder, const std::string& obstacle, const std::string&
       fake::write(folder, "scene.yaml", sheet + "obstacles:\n  - {name: slab, " + obstacle + "}\nrun: " + run + "\n"));
 }
 
-std::string warnings_of(const Setup& setup) {
-  std::string all;
-  for (const std::string& warning : setup.warnings) all += warning + "\n";
-  return all;
-}
-
 double height(const Setup& setup, double time) { return setup.drive_at(time).obstacles[0](0, 1); }
 
 }  // namespace
@@ -44,7 +38,7 @@ TEST_CASE("A number that is missing in a sequence is named, and the others keep 
   for (const double number : {1.0, 2.0, 3.0, 4.0, 4.5, 7.0, 9.0})
     CHECK(height(setup, (number - 1) / 10) == Approx(number));
   CHECK(height(setup, 7) == 9);
-  CHECK_THAT(warnings_of(setup), Contains("4 of 9: f3.obj, f6.obj to f8.obj"));
+  CHECK_THAT(fake::lines(setup.warnings), Contains("4 of 9: f3.obj, f6.obj to f8.obj"));
   CHECK_THROWS_WITH(with(folder, "sequence: {pattern: f%d.obj, first: 1, count: 7, fps: 10}"),
                     Contains("asks for 7 files") && Contains("f5.obj is the last"));
   CHECK_THROWS_WITH(with(folder, "sequence: {pattern: f%d.obj, first: 3, fps: 10}"),
@@ -56,20 +50,22 @@ TEST_CASE("What files do not say of their time is said, and so is where they end
   const Folder folder("time_said");
   for (const int number : {0, 1, 2}) write_frame(folder, number);
   const std::string files = "files: [f0.obj, f1.obj, f2.obj]";
-  CHECK_THAT(warnings_of(with(folder, "sequence: {" + files + "}")), Contains("30 frames a second are assumed"));
-  CHECK_THAT(warnings_of(with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 7}")), !Contains("slab"));
+  CHECK_THAT(fake::lines(with(folder, "sequence: {" + files + "}").warnings),
+             Contains("30 frames a second are assumed"));
+  CHECK_THAT(fake::lines(with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 7}").warnings),
+             !Contains("slab"));
   const Setup longer = with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 8}");
-  CHECK_THAT(warnings_of(longer), Contains("`slab` ends at 0.2 s: from frame 6 of 8"));
+  CHECK_THAT(fake::lines(longer.warnings), Contains("`slab` ends at 0.2 s: from frame 6 of 8"));
   const Setup later = with(folder, "sequence: {" + files + ", fps: 10, start: 1 s}", "{frames: 36}");
   CHECK(height(later, 1) == 0);
   CHECK(height(later, 1.15) == Approx(1.5));
-  CHECK_THAT(warnings_of(later), !Contains("begins"));
+  CHECK_THAT(fake::lines(later.warnings), !Contains("begins"));
   // A run may have any rate.
   for (const char* fps : {"24", "30", "120"})
     CHECK(height(with(folder, "sequence: {" + files + ", fps: 10}", "{frames: 1, fps: " + std::string(fps) + "}"),
                  0.15) == Approx(1.5));
   const Setup body = with(folder, "body: {clip: walk}", "{frames: 200}");
-  CHECK_THAT(warnings_of(body), Contains("`slab` ends at 5.967 s: from frame 179 of 200"));
+  CHECK_THAT(fake::lines(body.warnings), Contains("`slab` ends at 5.967 s: from frame 179 of 200"));
 }
 
 TEST_CASE("A frame of an earlier run is shown when it was, and a rejected one not at all", "[time]") {
@@ -94,7 +90,7 @@ TEST_CASE("A frame of an earlier run is shown when it was, and a rejected one no
   CHECK(height(setup, 0.55) == Approx(0.5));
   CHECK(height(setup, 0.75) == Approx(1.5));
   CHECK(height(setup, 3) == 2);
-  CHECK_THAT(warnings_of(setup), Contains("begins at 0.5 s") && Contains("start: 0 s"));
+  CHECK_THAT(fake::lines(setup.warnings), Contains("begins at 0.5 s") && Contains("start: 0 s"));
   CHECK(height(with(folder, part + ", start: 0 s}"), 0.25) == Approx(1.5));
   write({0.5, 0.6, 0.6}, StepStatus::accepted);
   CHECK_THROWS_WITH(with(folder, part + "}"), Contains("run.h5") && Contains("frame 2 at 0.6 s"));
@@ -114,7 +110,7 @@ TEST_CASE("Cases of other people's files play at the speed that these say", "[ti
   CHECK(rise(whole) == Approx(0.1).margin(1e-4));
   CHECK(rise(half) == Approx(rise(whole)).margin(1e-4));
   const Setup gap = read_setup(cases / "gap.yaml");
-  CHECK_THAT(warnings_of(gap), Contains("gap/f3.obj"));
+  CHECK_THAT(fake::lines(gap.warnings), Contains("gap/f3.obj"));
   const auto top = [&](double frame) { return gap.drive_at(frame / 30).obstacles[0].col(1).maxCoeff(); };
   CHECK(top(1) == Approx(0.2));
   CHECK(top(2) == Approx(0.35));  // the missing one

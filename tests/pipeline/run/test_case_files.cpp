@@ -15,16 +15,6 @@ namespace selvedge::test_case_files {
 using Catch::Matchers::Contains;
 using fake::case_file;
 
-namespace {
-
-std::string warnings_of(const Setup& setup) {
-  std::string all;
-  for (const std::string& warning : setup.warnings) all += warning + "\n";
-  return all;
-}
-
-}  // namespace
-
 TEST_CASE("cases: skeletons of twelve programs are known by their names", "[case_files]") {
   const auto folder = case_file("bvh_names");
   if (!folder) return;
@@ -84,9 +74,10 @@ TEST_CASE("cases: a trajectory with a dataset larger than its place is one error
 
 TEST_CASE("cases: pins inside a collider and cloth in the wrong unit are said when a scene is read", "[case_files]") {
   if (!case_file("pin_inside")) return;
-  CHECK_THAT(warnings_of(read_setup(*case_file("pin_inside/scene.yaml"))),
+  CHECK_THAT(fake::lines(read_setup(*case_file("pin_inside/scene.yaml")).warnings),
              Contains("21 pins of group top") && Contains("inside the obstacle `shoulder`"));
-  CHECK_THAT(warnings_of(read_setup(*case_file("cm_scale/scene.yaml"))), Contains("84.9 m") && Contains("unit: cm"));
+  CHECK_THAT(fake::lines(read_setup(*case_file("cm_scale/scene.yaml")).warnings),
+             Contains("84.9 m") && Contains("unit: cm"));
 }
 
 }  // namespace selvedge::test_case_files

@@ -1,12 +1,11 @@
 #include <catch2/catch.hpp>
 #include <cstring>
-#include <fstream>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/xdmf.hpp"
 #include "pipeline/tools/export.hpp"
-#include "tests/pipeline/fake_run.hpp"
+#include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_export {
 
@@ -18,11 +17,6 @@ std::filesystem::path write_run(const fake::Folder& folder, const Scene& scene, 
   for (int i = 0; i < frames; ++i) writer.append(fake::frame(scene, i));
   writer.close();
   return path;
-}
-
-std::string read_bytes(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace
@@ -48,7 +42,7 @@ TEST_CASE("a point cache holds every frame as floats after its header") {
   const Scene scene = fake::scene();
   const auto files = export_trajectory({write_run(folder, scene, 4), "pc2", folder.path / "pc2", false, {}});
   REQUIRE(files.size() == 2);
-  const std::string bytes = read_bytes(folder.path / "pc2" / "cloth.pc2");
+  const std::string bytes = fake::whole(folder.path / "pc2" / "cloth.pc2");
   REQUIRE(bytes.size() == 32 + 4 * 25 * 3 * sizeof(float));
   REQUIRE(std::memcmp(bytes.data(), "POINTCACHE2\0", 12) == 0);
   std::int32_t version = 0, points = 0, samples = 0;
