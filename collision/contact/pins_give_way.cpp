@@ -4,7 +4,9 @@
 #include <map>
 #include <vector>
 
+#include "collision/contact/path_pairs.hpp"
 #include "collision/contact/pins_apart.hpp"
+#include "collision/contact/resolve.hpp"
 #include "collision/geometry/box.hpp"
 
 namespace selvedge {

@@ -2,7 +2,8 @@
 
 #include <span>
 
-#include "collision/contact/resolve.hpp"
+#include "collision/contact/contact_pairs.hpp"
+#include "collision/contact/resolve_options.hpp"
 
 namespace selvedge {
 

@@ -4,7 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "collision/contact/contact_pairs.hpp"
+#include "collision/contact/contact_world.hpp"
+#include "collision/contact/node_pair.hpp"
 
 namespace selvedge {
 

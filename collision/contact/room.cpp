@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/contact/resolve.hpp"
+#include "collision/contact/response.hpp"
 #include "collision/geometry/stopwatch.hpp"
 
 namespace selvedge {

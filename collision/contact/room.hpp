@@ -1,7 +1,8 @@
 #pragma once
 
+#include "collision/contact/path_pairs.hpp"
 #include "collision/contact/proximity.hpp"
-#include "collision/contact/resolve.hpp"
+#include "collision/contact/resolve_options.hpp"
 
 namespace selvedge {
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "collision/contour/contour_regions.hpp"
+#include "collision/contour/contour.hpp"
+#include "collision/contour/segments.hpp"
 #include "collision/untangle/input_shape.hpp"
 
 namespace selvedge {

@@ -175,7 +175,7 @@ void add_flat(const Scene& scene, std::vector<Eigen::Triplet<double>>& entries) 
   }
 }
 
-// In a scene with curved rest shapes; what of them is flat keeps the constant form.
+// Adds the elements of a scene with curved rest shapes. Flat vertices keep the constant form.
 void add_curved(const Scene& scene, CurvatureBending& bending, std::vector<Eigen::Triplet<double>>& entries) {
   // A rest curvature below this angle per vertex is rounding in the input and counts as flat.
   constexpr double flat_angle = 1e-5;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/contact/contact_pairs.hpp"
+#include "collision/contact/contact_world.hpp"
 
 namespace selvedge {
 

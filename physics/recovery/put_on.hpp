@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "collision/contact/contact_pairs.hpp"
+#include "collision/contact/contact_world.hpp"
 #include "physics/recovery/recovery_options.hpp"
 #include "physics/recovery/untangling_budget.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/cutting_stepper.hpp"
+#include "physics/steppers/recovering_stepper.hpp"
 
 namespace selvedge {
 

@@ -2,10 +2,10 @@
 
 #include <memory>
 
+#include "physics/recovery/recovery_options.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/steppers/conventional_stepper.hpp"
-#include "physics/steppers/recovering_stepper.hpp"
 #include "physics/steppers/resting_stepper.hpp"
 
 namespace selvedge {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "collision/contact/contact_pairs.hpp"
+#include "collision/contact/node_pair.hpp"
 #include "collision/contact/response.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"

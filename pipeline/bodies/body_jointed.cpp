@@ -11,6 +11,7 @@
 #include "pipeline/bodies/joint_regressor.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_tables.hpp"
+#include "pipeline/formats/mesh_io.hpp"
 
 namespace selvedge {
 namespace {

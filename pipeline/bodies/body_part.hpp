@@ -5,7 +5,7 @@
 
 #include "pipeline/bodies/body.hpp"
 #include "pipeline/config/name_choice.hpp"
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
 

@@ -42,7 +42,7 @@ std::string file_name(std::string name) {
   return name;
 }
 
-// A scene, and what of it is held out.
+// A scene, and which of its parts are held out.
 struct TrainingSequence {
   CompareScene scene;
   HeldOut held;

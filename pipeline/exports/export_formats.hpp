@@ -17,7 +17,7 @@ struct ExportRequest {
   std::function<void(int done, int all)> progress{};  // of frames read, over all passes; may be empty
   std::filesystem::path onto = {};  // a mesh (OBJ, PLY) at the rest shape of cloths, which takes their place
   std::string onto_unit = "m";      // unit of its coordinates
-  std::function<void(const std::string&)> warn = {};  // gets what of that mesh cannot be read; may be empty
+  std::function<void(const std::string&)> warn = {};  // gets what cannot be read in that mesh; may be empty
   std::string cloth = {};                             // the cloth whose place it takes; empty: all
 
   std::filesystem::path file(const std::string& name) const;  // of the folder, which it makes

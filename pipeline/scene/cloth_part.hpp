@@ -8,7 +8,7 @@
 
 #include "physics/scene/scene.hpp"
 #include "physics/steppers/following_stepper.hpp"
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh.hpp"
 #include "pipeline/scene/setup_garment.hpp"
 
 namespace selvedge {
@@ -36,7 +36,7 @@ struct ClothPart {
   std::vector<int> sewn;  // of each vertex as read or made: its number here; empty where nothing is welded or sewn
   double sewn_apart = 0;  // how far vertices that are one now were apart [m]
   std::optional<Draping> draping;
-  bool cut = false;  // what of it is tangled is cut out at the start
+  bool cut = false;  // its tangled triangles are cut out at the start
 };
 
 }  // namespace selvedge

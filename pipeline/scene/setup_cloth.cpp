@@ -4,6 +4,7 @@
 
 #include "collision/geometry/counted.hpp"
 #include "pipeline/formats/mesh_faults.hpp"
+#include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh.hpp"
 #include "pipeline/garments/footing.hpp"
 #include "pipeline/garments/garment.hpp"
 #include "pipeline/obstacles/setup_body.hpp"

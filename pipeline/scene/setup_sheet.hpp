@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "pipeline/config/config.hpp"
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
 

@@ -16,7 +16,7 @@ void apply_start(const Config& section, ClothPart&, std::vector<std::string>& wa
 // then. Returns how many frames before.
 int begin_draped(const Performances&, double fps, std::vector<ClothPart>&);
 
-// Where garments are to start by cutting, cuts what of them is tangled out of the scene's state at time 0.
+// Where garments are to start by cutting, cuts their tangled triangles out of the scene's state at time 0.
 void begin_cut(const std::vector<ClothPart>&, const Scene&, State&);
 
 // Drive::skinned_targets of the scene at a time [s]; empty if it has no garment.

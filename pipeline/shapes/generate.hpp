@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
 

@@ -160,7 +160,7 @@ AlteredHdf5::AlteredHdf5(const std::filesystem::path& valid) {
   H5Fclose(file);
 }
 
-// Four bytes an alteration: which field, what of it, where, and to what.
+// Four bytes an alteration: which field, whether its type, its shape or its values, where, and the new value.
 void AlteredHdf5::write(const std::uint8_t* bytes, std::size_t size, const std::filesystem::path& path) const {
   struct Alteration {
     unsigned what = 0, where = 0, to = 0;

@@ -62,7 +62,7 @@ std::vector<Vec2> section_corners() {
   return corners;
 }
 
-// Integral of a linear function, that is 0 on a line, over what of a polygon lies where it is above 0.
+// Integral of a linear function over the part of a polygon in which it is above 0.
 template <class Height>
 double integral_above(const std::vector<Vec2>& polygon, const Height& height) {
   std::vector<Vec2> part;

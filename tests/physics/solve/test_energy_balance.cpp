@@ -37,7 +37,7 @@ TEST_CASE("energy balance: speed and height from nowhere, and a little of them",
   CHECK(judged(w, moved(w, 0, 3)).from_nowhere());
   CHECK_FALSE(judged(w, moved(w, 0.1 * edge, 0)).from_nowhere());
   CHECK_FALSE(judged(w, moved(w, -1, 4)).from_nowhere());
-  CHECK(judged(w, moved(w, 0, 1e200)).from_nowhere());  // as far as not to be a number
+  CHECK(judged(w, moved(w, 0, 1e200)).from_nowhere());  // the energy is not a number
 }
 
 TEST_CASE("energy balance: little by little is found out, and what is lost again is no gain", "[energy_balance]") {
