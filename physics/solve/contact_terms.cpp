@@ -29,34 +29,31 @@ double compliance(const ContactTerm& term, const Eigen::VectorXd& inverse_mass) 
 
 // The common part of terms of proximities and impacts: the linearised gap and the slip, with obstacle nodes as
 // constants. False if no node of the pair can move.
-bool linearise(const Scene& scene, const ContactWorld& world, const NodePair& pair, const Eigen::Vector4d& weights,
-               const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-               const ContactTermOptions& options, ContactTerm& term) {
+bool linearise(const ContactMotion& motion, const NodePair& pair, const Eigen::Vector4d& weights, ContactTerm& term) {
   bool obstacle = false;
   for (int i = 0; i < 4; ++i) {
     const int node = pair.nodes[i];
-    if (world.is_cloth(node)) {
+    if (motion.world.is_cloth(node)) {
       term.nodes[i] = node;
       term.weights[i] = weights[i];
       continue;
     }
     obstacle = true;
-    term.offset += weights[i] * term.normal.dot(row(nodes1, node));
-    term.drift += weights[i] * (row(nodes1, node) - row(nodes0, node));
+    term.offset += weights[i] * term.normal.dot(row(motion.nodes1, node));
+    term.drift += weights[i] * (row(motion.nodes1, node) - row(motion.nodes0, node));
   }
-  const double give = compliance(term, inverse_mass);
+  const double give = compliance(term, motion.inverse_mass);
   if (give <= 0) return false;
-  term.stiffness = options.stiffness / (give * h * h);
-  term.stiffest = options.max_stiffening * term.stiffness;
-  term.friction = obstacle ? scene.contact.friction : scene.contact.self_friction;
+  term.stiffness = motion.options.stiffness / (give * motion.h * motion.h);
+  term.stiffest = motion.options.max_stiffening * term.stiffness;
+  term.friction = obstacle ? motion.scene.contact.friction : motion.scene.contact.self_friction;
   return true;
 }
 
 }  // namespace
 
-Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<const Proximity> proximities,
-                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-                       const ContactTermOptions& options) {
+Contacts contact_terms(const ContactMotion& motion, std::span<const Proximity> proximities) {
+  const ContactTermOptions& options = motion.options;
   Contacts contacts;
   for (const Proximity& p : proximities) {
     const double lift = options.overlap_removed * (p.rest_gap - p.gap);
@@ -66,30 +63,30 @@ Contacts contact_terms(const Scene& scene, const ContactWorld& world, std::span<
     term.softness = options.onset * p.rest_gap;
     // Loaded cloth comes to rest where sinking and lifting balance: at half the rest gap.
     term.sink = std::max(options.overlap_removed * p.gap, options.load_sink * p.rest_gap);
-    if (!linearise(scene, world, p.pair, p.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
+    if (!linearise(motion, p.pair, p.weights, term)) continue;
     contacts.pairs.push_back(p.pair);
     contacts.terms.push_back(term);
   }
   return contacts;
 }
 
-void add_impact_terms(const Scene& scene, const ContactWorld& world, std::span<const Impact> impacts,
-                      const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-                      double deep, Contacts& contacts, const ContactTermOptions& options) {
+void add_impact_terms(const ContactMotion& motion, std::span<const Impact> impacts, double deep, Contacts& contacts) {
+  const ContactTermOptions& options = motion.options;
+  const double thickness = motion.scene.contact.thickness;
   std::vector<std::pair<NodePair, std::size_t>> owned;
   for (std::size_t k = 0; k < contacts.pairs.size(); ++k) owned.emplace_back(contacts.pairs[k], k);
   std::sort(owned.begin(), owned.end());
   for (const Impact& impact : impacts) {
-    const bool is_deep = impact.target - impact_gap(impact, nodes1) > deep;
+    const bool is_deep = impact.target - impact_gap(impact, motion.nodes1) > deep;
     const auto owner = std::lower_bound(owned.begin(), owned.end(), std::pair(impact.pair, std::size_t{0}));
     const bool has_term = owner != owned.end() && owner->first == impact.pair;
     if (has_term && !is_deep) continue;
     ContactTerm term;
     term.normal = impact.normal;
-    term.target = std::clamp(impact_gap(impact, nodes0), 0.0, 0.5 * scene.contact.thickness);
-    term.softness = options.onset * scene.contact.thickness;
-    term.sink = std::max(options.impact_sink * term.target, options.load_sink * scene.contact.thickness);
-    if (!linearise(scene, world, impact.pair, impact.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
+    term.target = std::clamp(impact_gap(impact, motion.nodes0), 0.0, 0.5 * thickness);
+    term.softness = options.onset * thickness;
+    term.sink = std::max(options.impact_sink * term.target, options.load_sink * thickness);
+    if (!linearise(motion, impact.pair, impact.weights, term)) continue;
     if (has_term) {
       const ContactTerm& old = contacts.terms[owner->second];
       term.stiffness = std::max(term.stiffness, old.stiffness);
@@ -183,22 +180,21 @@ double mistaken_friction(std::span<const ContactTerm> solved, std::span<const Co
   return wrong > 0 ? wrong / allowed : 0;
 }
 
-void relinearise(const Scene& scene, const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
-                 const Points& nodes0, const Points& nodes1, double h, Contacts& contacts,
-                 const ContactTermOptions& options) {
+void relinearise(const ContactMotion& motion, Contacts& contacts) {
+  const Points& nodes1 = motion.nodes1;
   for (std::size_t k = 0; k < contacts.terms.size(); ++k) {
     const NodePair& pair = contacts.pairs[k];
     const ContactTerm& old = contacts.terms[k];
     const Closest now = closest(pair, nodes1);
     Vec3 between = Vec3::Zero();
     for (int i = 0; i < 4; ++i) between += now.weights[i] * row(nodes1, pair.nodes[i]);
-    if (between.dot(old.normal) <= options.same_side * between.norm()) continue;
+    if (between.dot(old.normal) <= motion.options.same_side * between.norm()) continue;
     ContactTerm term;
-    term.normal = contact_normal(world, pair, now.weights, between, nodes1);
+    term.normal = contact_normal(motion.world, pair, now.weights, between, nodes1);
     term.target = old.target;
     term.softness = old.softness;
     term.sink = old.sink;
-    if (!linearise(scene, world, pair, now.weights, inverse_mass, nodes0, nodes1, h, options, term)) continue;
+    if (!linearise(motion, pair, now.weights, term)) continue;
     term.stiffness = old.stiffness;
     term.stiffest = old.stiffest;
     term.normal_force = old.normal_force;

@@ -18,21 +18,27 @@ struct Contacts {
   std::vector<ContactTerm> terms;
 };
 
-// The proximities of a step as terms of its incremental potential. nodes0: all nodes at the step's start. nodes1: the
-// same with obstacles at their ends. A pair's stiffness begins with a multiple of its mass over h^2. So a layer sinks
-// under its own weight by the same small fraction of g h^2 at any density, scale or time step. The force vanishes once
-// a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and Anderson 2002, section 7.2).
-// Pairs farther apart than their rest gap are stopped there.
-Contacts contact_terms(const Scene&, const ContactWorld&, std::span<const Proximity>,
-                       const Eigen::VectorXd& inverse_mass, const Points& nodes0, const Points& nodes1, double h,
-                       const ContactTermOptions& = {});
+// The motion for which contacts are linearised. Refers to its scene, world, masses and nodes.
+struct ContactMotion {
+  const Scene& scene;
+  const ContactWorld& world;
+  const Eigen::VectorXd& inverse_mass;  // of all nodes [1/kg]
+  const Points& nodes0;                 // at the start [m]
+  const Points& nodes1;                 // with obstacles at their ends, and the cloth where it is now [m]
+  double h;                             // length [s]
+  ContactTermOptions options = {};
+};
+
+// The proximities of a step as terms of its incremental potential. A pair's stiffness begins with a multiple of its
+// mass over h^2. So a layer sinks under its own weight by the same small fraction of g h^2 at any density, scale or time
+// step. The force vanishes once a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw and
+// Anderson 2002, section 7.2). Pairs farther apart than their rest gap are stopped there.
+Contacts contact_terms(const ContactMotion&, std::span<const Proximity>);
 
 // Adds impacts that a solve has run into as terms of the next solve, so that the whole cloth gives way and not the four
 // vertices alone. Such a pair is stopped at half the thickness, or at its present distance if that is less. A pair that
 // has a term already keeps it; if its impact is deeper than `deep` [m], the term is linearised anew.
-void add_impact_terms(const Scene&, const ContactWorld&, std::span<const Impact>, const Eigen::VectorXd& inverse_mass,
-                      const Points& nodes0, const Points& nodes1, double h, double deep, Contacts&,
-                      const ContactTermOptions& = {});
+void add_impact_terms(const ContactMotion&, std::span<const Impact>, double deep, Contacts&);
 
 // The inverse effective mass of a separation [1/kg]. 0 if no free vertex has a weight of at least 0.01, since it would
 // have to move a hundred times as far as the separation.
@@ -62,8 +68,7 @@ double mistaken_friction(std::span<const ContactTerm> solved, std::span<const Co
 // Linearises terms anew at the ends nodes1 that a solve has found, so that forces act at the step's end, as implicit
 // Euler requires: with directions from the start, sliding round a bend would be braked. Pairs that have changed sides
 // stay as they are.
-void relinearise(const Scene&, const ContactWorld&, const Eigen::VectorXd& inverse_mass, const Points& nodes0,
-                 const Points& nodes1, double h, Contacts&, const ContactTermOptions& = {});
+void relinearise(const ContactMotion&, Contacts&);
 
 // Makes terms stiff enough to bear the forces on the cloth's vertices [N] without sinking more than allowed
 // (load_sink).

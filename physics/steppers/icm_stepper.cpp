@@ -108,7 +108,7 @@ void IcmStepper::find_pairs(const Points& nodes0, const Points& at, const Points
     report.collision.min_gap = std::min(report.collision.min_gap, p.gap);
   }
   const auto terms =
-      contact_terms(scene_, world_, near, inverse_mass_, nodes0, nodes1, h, options_.substep.contact).terms;
+      contact_terms({scene_, world_, inverse_mass_, nodes0, nodes1, h, options_.substep.contact}, near).terms;
   work.repulsion.insert(work.repulsion.end(), terms.begin(), terms.end());
   for (const Proximity& p : near) work.held.push_back(p.pair);
   std::sort(work.held.begin(), work.held.end());

@@ -30,6 +30,10 @@ SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& euler
       deep_(deep_impact(scene, options)),
       most_newton_(euler.max_newton_step) {}
 
+ContactMotion SubstepSolve::motion_of(const Substep& s) const {
+  return {scene_, stage_.world, stage_.inverse_mass, s.start.nodes, s.nodes, s.h, options_.contact};
+}
+
 NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepReport& report) {
   const Timed timed(report.seconds.solve);
   StepProblem bounded = problem;
@@ -87,11 +91,9 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     const bool bounded = change < options_.normal_change || !newton.converged;
     if (pass >= least && bounded && deepest(found, s.nodes) < deep_) return newton;
     const Timed timed(report.seconds.response);
-    add_impact_terms(scene_, stage_.world, found, stage_.inverse_mass, nodes0, s.nodes, s.h, deep_, contacts,
-                     options_.contact);
+    add_impact_terms(motion_of(s), found, deep_, contacts);
     raise_stiffness(contacts.terms, x);
-    if (pass == least - 1)
-      relinearise(scene_, stage_.world, stage_.inverse_mass, nodes0, s.nodes, s.h, contacts, options_.contact);
+    if (pass == least - 1) relinearise(motion_of(s), contacts);
   }
 }
 
@@ -123,8 +125,7 @@ std::vector<Proximity> SubstepSolve::near(const Substep& s, StepReport& report) 
 Contacts SubstepSolve::loaded_contacts(const Substep& s, const std::vector<Proximity>& near, const StepProblem& problem,
                                        const Points& x, StepReport& report) {
   const Timed timed(report.seconds.response);
-  Contacts contacts =
-      contact_terms(scene_, stage_.world, near, stage_.inverse_mass, s.start.nodes, s.nodes, s.h, options_.contact);
+  Contacts contacts = contact_terms(motion_of(s), near);
   // The load of a contact is the force on it at the place where the cloth would go without contact.
   if (!contacts.terms.empty())
     set_load_stiffness(contacts.terms, stage_.inverse_mass, -solver_.gradient(problem, x), options_.contact);

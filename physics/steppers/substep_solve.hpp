@@ -58,6 +58,8 @@ class SubstepSolve {
   void stick(Substep&, const StepProblem&, const Contacts&, Points& x, StepReport&) const;
 
  private:
+  ContactMotion motion_of(const Substep&) const;
+
   const Scene& scene_;
   ContactStage& stage_;
   SubstepOptions options_;

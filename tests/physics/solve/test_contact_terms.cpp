@@ -27,7 +27,7 @@ struct VertexOnFloor {
   }
   std::vector<ContactTerm> terms(double gap, double rest_gap, double h) const {
     const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), gap, rest_gap};
-    return contact_terms(scene, world, std::vector{p}, inverse_mass, nodes(gap), nodes(gap), h).terms;
+    return contact_terms({scene, world, inverse_mass, nodes(gap), nodes(gap), h}, std::vector{p}).terms;
   }
 };
 
@@ -48,7 +48,7 @@ TEST_CASE("contact terms: a moving obstacle carries the gap and the slip with it
   const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), 1e-3, 2e-3};
   Points end = c.nodes(1e-3);
   end.bottomRows(3).rowwise() += Eigen::RowVector3d(0.02, 5e-4, 0);
-  const auto terms = contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), end, 0.01).terms;
+  const auto terms = contact_terms({c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01}, std::vector{p}).terms;
   CHECK(contact_gap(terms[0], c.nodes(1e-3)) == Approx(5e-4));
   const Vec3 slip = contact_slip(terms[0], c.nodes(1e-3), c.nodes(1e-3));
   CHECK(slip.x() == Approx(-0.02));
@@ -69,7 +69,7 @@ TEST_CASE("contact terms: a pair in which what is free has hardly a part is left
     const Proximity p{
         {PairKind::vertex_face, {0, 1, 2, 3}}, {weight, -0.5 * weight, -0.5 * weight, 0}, Vec3::UnitY(), 1e-3, 2e-3};
     const auto terms =
-        contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), c.nodes(1e-3), 0.01);
+        contact_terms({c.scene, c.world, c.inverse_mass, c.nodes(1e-3), c.nodes(1e-3), 0.01}, std::vector{p});
     CHECK(terms.terms.empty() != is_there);
   }
 }
@@ -177,18 +177,18 @@ TEST_CASE("contact terms: one that was pressed too deep is stiffened, and not be
 TEST_CASE("contact terms: they follow a pair to where its step ends, unless it has changed sides", "[contact_terms]") {
   const VertexOnFloor c;
   const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), 1e-3, 2e-3};
-  auto contacts = contact_terms(c.scene, c.world, std::vector{p}, c.inverse_mass, c.nodes(1e-3), c.nodes(1e-3), 0.01);
+  auto contacts = contact_terms({c.scene, c.world, c.inverse_mass, c.nodes(1e-3), c.nodes(1e-3), 0.01}, std::vector{p});
   Points end = c.nodes(1.5e-3);
   end(0, 0) = 0.2;
   end.bottomRows(3).rowwise() += Eigen::RowVector3d(0, 2e-4, 0);
   contacts.terms[0].stiffness = 77;
-  relinearise(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
+  relinearise({c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01}, contacts);
   CHECK(contact_gap(contacts.terms[0], end) == Approx(1.3e-3));
   CHECK(contacts.terms[0].stiffness == 77);
   CHECK(contact_slip(contacts.terms[0], c.nodes(1e-3), end).x() == Approx(0.2));
   const double offset = contacts.terms[0].offset;
   end(0, 1) = -1e-3;
-  relinearise(c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01, contacts);
+  relinearise({c.scene, c.world, c.inverse_mass, c.nodes(1e-3), end, 0.01}, contacts);
   CHECK(contacts.terms[0].offset == offset);
 }
 
@@ -199,14 +199,15 @@ TEST_CASE("contact terms: an impact makes a term; a deep one of a pair that has 
   Impact impact{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY()};
   impact.target = 4e-4;
   Contacts contacts;
-  add_impact_terms(c.scene, c.world, std::vector{impact}, c.inverse_mass, start, c.nodes(0), 0.01, 1e-3, contacts);
+  add_impact_terms({c.scene, c.world, c.inverse_mass, start, c.nodes(0), 0.01}, std::vector{impact}, 1e-3, contacts);
   REQUIRE(contacts.terms.size() == 1);
   CHECK(contacts.terms[0].target == Approx(0.5 * c.scene.contact.thickness));
   impact.normal = Vec3(0.6, 0.8, 0);
-  add_impact_terms(c.scene, c.world, std::vector{impact}, c.inverse_mass, start, c.nodes(0), 0.01, 1e-3, contacts);
+  add_impact_terms({c.scene, c.world, c.inverse_mass, start, c.nodes(0), 0.01}, std::vector{impact}, 1e-3, contacts);
   CHECK(contacts.terms[0].normal == Vec3::UnitY());  // 0.4 mm deep
   contacts.terms[0].stiffness = 1e6;
-  add_impact_terms(c.scene, c.world, std::vector{impact}, c.inverse_mass, start, c.nodes(-1e-3), 0.01, 1e-3, contacts);
+  add_impact_terms({c.scene, c.world, c.inverse_mass, start, c.nodes(-1e-3), 0.01}, std::vector{impact}, 1e-3,
+                   contacts);
   REQUIRE(contacts.terms.size() == 1);
   CHECK(contacts.terms[0].normal == impact.normal);
   CHECK(contacts.terms[0].stiffness == 1e6);
