@@ -48,6 +48,7 @@ std::optional<MadeFrame> FramesAhead::next() {
 
 // Takes a step, or judges the waiting frame, or both. False if all steps are taken.
 bool FramesAhead::advance(std::optional<MadeFrame>& judged) {
+  // A rejected step has no state to judge.
   if (waiting_ && waiting_->report.status != StepStatus::accepted) {
     judged = std::exchange(waiting_, std::nullopt);
     return true;
@@ -55,6 +56,7 @@ bool FramesAhead::advance(std::optional<MadeFrame>& judged) {
   const bool beside = threads_ > 1 && arrangement_.beside();
   const State& from = waiting_ ? waiting_->state : state_;
   const bool last = from.frame >= frames_;
+  // No step is to be taken beside the audits of the waiting frame.
   if (waiting_ && (last || !beside || trouble_)) {
     judge(*waiting_);
     judged = std::exchange(waiting_, std::nullopt);
@@ -67,13 +69,15 @@ bool FramesAhead::advance(std::optional<MadeFrame>& judged) {
   }
   MadeFrame made = step_beside(from);
   judged = std::exchange(waiting_, std::nullopt);
-  if (judged && !judged->state.clean) {  // the step is discarded, and its drive is needed again
+  if (judged && !judged->state.clean) {
+    // The step began from a frame that is not clean. It is discarded, and its drive is needed again.
     coming_ = std::move(made.drive);
     trouble_ = nullptr;
   } else if (judged || state_.clean) {
     waiting_ = std::move(made);
     waiting_->state.clean = true;  // assumed until its audit
   } else {
+    // Nothing is assumed after a state that is not clean.
     judge(made);
     judged = std::move(made);
   }
