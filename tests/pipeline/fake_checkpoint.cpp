@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <functional>
 
 namespace selvedge::fake {
 namespace {
