@@ -1,6 +1,7 @@
 #include "pipeline/bodies/mannequin_form.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 

@@ -1,6 +1,7 @@
 #include "pipeline/shapes/implicit_form.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
