@@ -47,8 +47,8 @@ class Run:
 
 def bare(run, count, workers):
     """Seconds of all cells without selvedge.fleet."""
-    begun, environment = time.monotonic(), dict(os.environ, OMP_NUM_THREADS="1")
-    options = {"check": True, "start_new_session": True, "stdout": subprocess.DEVNULL, "env": environment}
+    begun, quiet = time.monotonic(), {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    options = {"check": True, "start_new_session": True, "env": dict(os.environ, OMP_NUM_THREADS="1"), **quiet}
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
         for k in range(count):
             pool.submit(subprocess.run, [run.program, "cell", run.file, f"c{k:03}", "--out", run.out], **options)
