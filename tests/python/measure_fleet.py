@@ -1,9 +1,10 @@
 """What selvedge.fleet adds to a cell: measure_fleet.py PROGRAM [CELLS] [REPEATS], a table for docs/results/cells.md.
 
 Cells are short shots by the program itself. A run's overhead is its time by the clock, times its workers, less the
-times that its cells took by themselves. Bare runs call the program on one cell after another, in as many threads as
-there are workers, each cell in a session of its own as selvedge.fleet does it, because schedulers may share out cores by
-session. Bare runs and others take turns, since the machine may be busier at one time than at another.
+times that its cells took by themselves. Bare runs list the cells, call the program on one after another, in as many
+threads as there are workers, and gather; each cell is in a session of its own as selvedge.fleet does it, because
+schedulers may share out cores by session. Bare runs and others take turns, since the machine may be busier at one time
+than at another.
 """
 
 import concurrent.futures
@@ -46,12 +47,15 @@ class Run:
 
 
 def bare(run, count, workers):
-    """Seconds of all cells without selvedge.fleet."""
+    """Seconds of all cells, the listing and the gathering, without selvedge.fleet."""
     begun, quiet = time.monotonic(), {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     options = {"check": True, "start_new_session": True, "env": dict(os.environ, OMP_NUM_THREADS="1"), **quiet}
+    out = ["--out", run.out]
+    subprocess.run([run.program, "cells", run.file, "--json"], **options)
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
         for k in range(count):
-            pool.submit(subprocess.run, [run.program, "cell", run.file, f"c{k:03}", "--out", run.out], **options)
+            pool.submit(subprocess.run, [run.program, "cell", run.file, f"c{k:03}", *out], **options)
+    subprocess.run([run.program, "gather", run.file, *out], **options)
     return time.monotonic() - begun
 
 
