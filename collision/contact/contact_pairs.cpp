@@ -60,19 +60,30 @@ struct Wanted {
   const std::vector<char>& marks;  // by node: only pairs with a marked one; empty: all pairs
   const Exemption* left_out;       // may be null
   const PairMotion* motion;        // only pairs that may come within `reach`; null: all pairs
-  const Points& x0;
+  const Points &x0, &x1;
   double reach;
 
   void add(const NodePair& pair, FoundPairs& found) const {
     ++found.overlapping;
     if (!marks.empty() && std::ranges::none_of(pair.nodes, [&](int node) { return marks[node] != 0; })) return;
     if (left_out && left_out->leaves_alone(world, pair.nodes)) return;
-    if (motion) {
-      const std::optional<double> gap = gap_if_near(*motion, pair, x0, reach);
-      if (!gap) return;
+    if (!motion) return found.pairs.push_back(pair);
+    found.untested[found.untested_count++] = pair;
+    if (found.untested_count == PairLanes::width) test(found);
+  }
+  // Lists those of the untested pairs that may come near.
+  void test(FoundPairs& found) const {
+    PairLanes lanes;
+    for (int i = 0; i < found.untested_count; ++i) lanes.set(i, found.untested[i], x0, x1);
+    const unsigned away = pair_kernels().stays_away(lanes, reach);
+    for (int i = 0; i < found.untested_count; ++i) {
+      if (away >> i & 1) continue;
+      const std::optional<double> gap = gap_if_near(*motion, found.untested[i], x0, reach);
+      if (!gap) continue;
       found.gap.push_back(*gap);
+      found.pairs.push_back(found.untested[i]);
     }
-    found.pairs.push_back(pair);
+    found.untested_count = 0;
   }
 };
 
@@ -188,14 +199,17 @@ void PairSearch::collect(const Points& x0, const Points& x1, double radius, cons
     return Side{p, ends ? p.node_ends.data() : nullptr, marks.empty() ? nullptr : p.marks.data()};
   };
   const Side cloth = side(cloth_);
-  const Wanted wanted{world_, marks, left_out_, motion, x0, radius};
+  const Wanted wanted{world_, marks, left_out_, motion, x0, x1, radius};
   std::int64_t overlapping = 0;
   const auto gather_with = [&](const Side& other, bool same) {
     const int parts = visit_in_parts(BvhTraversal{cloth.bvh(), other.bvh(), same, nullptr, cloth.node_ends,
                                                   other.node_ends, cloth.marks, other.marks},
                                      scratch_, LeafPairs{cloth, other, same, wanted});
     std::size_t found = pairs.size();
-    for (int i = 0; i < parts; ++i) found += scratch_[i].pairs.size();
+    for (int i = 0; i < parts; ++i) {
+      if (scratch_[i].untested_count > 0) wanted.test(scratch_[i]);
+      found += scratch_[i].pairs.size();
+    }
     pairs.reserve(found);
     if (motion) gap.reserve(found);
     for (int i = 0; i < parts; ++i) {

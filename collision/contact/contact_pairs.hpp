@@ -1,10 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "collision/contact/contact_world.hpp"
-#include "collision/contact/node_pair.hpp"
+#include "collision/contact/pair_lanes.hpp"
 #include "collision/contact/search_part.hpp"
 
 namespace selvedge {
@@ -24,13 +25,16 @@ struct SearchTally {
 // What one part of a search has found.
 struct FoundPairs {
   std::vector<NodePair> pairs;
-  std::vector<double> gap;       // at the start, of each pair; empty if nobody asked for it [m]
-  std::int64_t overlapping = 0;  // pairs whose boxes overlap
+  std::vector<double> gap;                          // at the start, of each pair; empty if nobody asked for it [m]
+  std::int64_t overlapping = 0;                     // pairs whose boxes overlap
+  std::array<NodePair, PairLanes::width> untested;  // found, but not yet tested for coming near
+  int untested_count = 0;
 
   void clear() {
     pairs.clear();
     gap.clear();
     overlapping = 0;
+    untested_count = 0;
   }
 };
 

@@ -1,10 +1,12 @@
 #include "collision/contact/resolve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <set>
 
+#include "collision/contact/pair_lanes.hpp"
 #include "collision/contact/pair_motion.hpp"
 #include "collision/contact/resolution.hpp"
 #include "collision/geometry/stop_scope.hpp"
@@ -23,6 +25,35 @@ struct Separations {
   double operator()(const NodePair& pair) const { return std::min(most, part * rest_distance(world, pair)); }
 };
 
+// Pairs that are looked at together for an impact.
+struct Suspects {
+  const Points &x0, &x1;
+  const Separations& separation;
+  const ContactWorld* normals_of;
+  std::array<const NodePair*, PairLanes::width> pairs;
+  int count = 0;
+
+  void add(const NodePair& pair, std::vector<Impact>& found) {
+    pairs[count++] = &pair;
+    if (count == PairLanes::width) look(found);
+  }
+  void look(std::vector<Impact>& found) {
+    PairLanes lanes;
+    for (int i = 0; i < count; ++i) lanes.set(i, *pairs[i], x0, x1);
+    const unsigned apart = pair_kernels().apart_all_the_way(lanes, separation.most);
+    for (int i = 0; i < count; ++i) {
+      if (apart >> i & 1) continue;
+      const NodePair& pair = *pairs[i];
+      auto impact = find_impact(pair, x0, x1, separation.most, normals_of);
+      if (!impact) continue;
+      if (const double own = separation(pair); own < separation.most)
+        impact = find_impact(pair, x0, x1, own, normals_of);
+      if (impact) found.push_back(*impact);
+    }
+    count = 0;
+  }
+};
+
 // Impacts of the pairs that have a free node and a node in `moved` (empty: every node), sorted by pair.
 // Adds how many paths were tested to `swept`.
 std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inverse_mass,
@@ -36,7 +67,8 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
   std::vector<std::int64_t> tested(chunks, 0);
   StopPoll stop;
 #pragma omp parallel for schedule(dynamic)
-  for (int c = 0; c < chunks; ++c)
+  for (int c = 0; c < chunks; ++c) {
+    Suspects suspects{x0, x1, separation, normals_of, {}};
     for (int i = c * chunk, end = stop.wanted() ? 0 : std::min((c + 1) * chunk, count); i < end; ++i) {
       const NodePair& pair = path.pairs[i];
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };
@@ -46,12 +78,10 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
           !any([&](int n) { return inverse_mass[n] > 0; }))
         continue;
       ++tested[c];
-      auto impact = find_impact(pair, x0, x1, separation.most, normals_of);
-      if (!impact) continue;
-      if (const double own = separation(pair); own < separation.most)
-        impact = find_impact(pair, x0, x1, own, normals_of);
-      if (impact) found[c].push_back(*impact);
+      suspects.add(pair, found[c]);
     }
+    if (suspects.count > 0) suspects.look(found[c]);
+  }
   stop.check();
   swept = std::accumulate(tested.begin(), tested.end(), swept);
   std::vector<Impact> all;

@@ -11,6 +11,13 @@ constexpr double beside = 0.01;                       // this near to the line o
 constexpr double cell = far / 2;                      // edge of the cubes in which other parts are looked for [m]
 constexpr double facing = -0.3;                       // largest cosine of its normal with the direction out
 
+// A lower bound of the cosines of a box's normals with `along`. A cosine rounds by less than the margin.
+double least_cosine(const NormalBox& box, const Vec3& along) {
+  double least = -1e-12;
+  for (int k = 0; k < 3; ++k) least += std::min(box.lo[k] * along[k], box.hi[k] * along[k]);
+  return least;
+}
+
 // For each foot the distance along the line out to x at which another part of the body begins [m]. A part beside the
 // line counts as farther by its distance from it. Infinite if no part is near enough to matter.
 std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, const Points& x) {
@@ -21,12 +28,20 @@ std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, co
     const double out = way.norm(), most = out / first_part;
     if (!(out > 0 && out < far)) continue;
     const Vec3 along = way / out;
-    body.grid.for_each_place_near(from, most + beside, [&](int p) {
+    const auto look_at = [&](int p) {
       const Vec3 to = row(body.x_in_order, p) - from;
       const double height = to.dot(along);
       if (!(height > 0 && height < std::min(gap[v], most)) || row(body.normals_in_order, p).dot(along) > facing) return;
       const double there = height + std::max(0.0, (to - height * along).norm() - beside);
       if (there < most) gap[v] = std::min(gap[v], there);
+    };
+    // Most cubes near a foot hold skin of its own part, which does not face it.
+    body.grid.for_each_row_near(from, most + beside, [&](int first_cube, int last_cube) {
+      for (int cube = first_cube; cube <= last_cube; ++cube) {
+        const int first = body.grid.first(cube), end = body.grid.first(cube + 1);
+        if (first == end || least_cosine(body.normals_from[first], along) > facing) continue;
+        for (int p = first; p < end; ++p) look_at(p);
+      }
     });
   }
   return gap;
@@ -38,7 +53,17 @@ PosedSkin::PosedSkin(const Surface& body, const Points& posed)
     : x(posed),
       grid(posed, cell),
       x_in_order(posed(grid.order(), Eigen::all)),
-      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {}
+      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {
+  normals_from.resize(static_cast<std::size_t>(posed.rows()));
+  for (int cube = 0; cube < grid.cubes(); ++cube)
+    for (int first = grid.first(cube), p = first; p < grid.first(cube + 1); ++p)
+      for (int k = 0; k < 3; ++k) {
+        const double along = normals_in_order(p, k);
+        NormalBox& box = normals_from[first];
+        box.lo[k] = p == first ? along : std::min(box.lo[k], along);
+        box.hi[k] = p == first ? along : std::max(box.hi[k], along);
+      }
+}
 
 Footing footing_of(const Points& x, const PosedSkin& rest) {
   Footing footing;

@@ -73,7 +73,7 @@ function colourByStretch(geometry, metric, top, table) {
 function colourByMap(geometry, map, drawn, table) {
   const vertices = geometry.attributes.position.count, valueOf = map.at(drawn);
   if (!geometry.attributes.color)
-    geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * vertices), 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * vertices), 3));
   const colours = geometry.attributes.color.array;
   for (let v = 0; v < vertices; ++v) {
     const value = valueOf(v), at = Math.min(1, Math.max(0, (value - map.low) / (map.high - map.low || 1)));

@@ -81,12 +81,12 @@ function makePlayer(timeline, changed) {
 
 function initialLook(runs, options) {
   return {
-    strain: options.flag('strain', false),
-    wire: options.flag('wire', false),
-    marks: options.flag('marks', true),
-    plots: options.flag('plots', !isReport(runs) && (runs.length === 1 || window.innerWidth > 700)),
-    map: options.number('map', isReport(runs) ? 0 : -1),
-    strainTop: Math.max(1.0001, options.number('top', strainTop(runs))),
+    strain: options.flag("strain", false),
+    wire: options.flag("wire", false),
+    marks: options.flag("marks", true),
+    plots: options.flag("plots", !isReport(runs) && (runs.length === 1 || window.innerWidth > 700)),
+    map: options.number("map", isReport(runs) ? 0 : -1),
+    strainTop: Math.max(1.0001, options.number("top", strainTop(runs))),
   };
 }
 
@@ -190,7 +190,7 @@ function start() {
   showTable(data.runs[0].table);
   window.addEventListener("resize", page.arrange);
 
-  document.body.classList.toggle('no-bars', !options.flag('bars', true));
+  document.body.classList.toggle("no-bars", !options.flag("bars", true));
   page.setTheme(firstTheme(options));
   player.go(options.number("frame", 0));
   player.play(options.flag("play", false));

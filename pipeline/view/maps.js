@@ -13,7 +13,7 @@ function bindMaps(page) {
     const button = document.createElement("button");
     button.textContent = map.name[0].toUpperCase() + map.name.slice(1);
     button.title = `Colour by ${map.name}`;
-    button.addEventListener('click', () => {
+    button.addEventListener("click", () => {
       const shown = mapOf(runs[0], look) === map;
       look.map = shown ? -1 : m;
       look.strain = false;
@@ -23,8 +23,8 @@ function bindMaps(page) {
     return button;
   });
   page.showMaps = () => {
-    buttons.forEach((button, m) => button.setAttribute('aria-pressed', mapOf(runs[0], look) === runs[0].maps[m]));
-    strain.setAttribute('aria-pressed', look.strain);
+    buttons.forEach((button, m) => button.setAttribute("aria-pressed", mapOf(runs[0], look) === runs[0].maps[m]));
+    strain.setAttribute("aria-pressed", look.strain);
   };
   strain.hidden = isReport(runs);
   page.showMaps();

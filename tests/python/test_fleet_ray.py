@@ -1,5 +1,6 @@
 """Cells on a Ray cluster of two nodes of one core on this machine; skipped without the package ray."""
 
+import json
 import os
 import pathlib
 import signal
@@ -10,6 +11,7 @@ import threading
 
 import pytest
 from cells_of_fleet import Work, gone, wait_until
+from shots_of_fleet import write_shots
 
 import selvedge
 from selvedge import fleet
@@ -82,6 +84,64 @@ def test_a_worker_and_a_node_are_killed_in_the_middle(tmp_path, cluster, shared)
     fleet.run(work.file, local, program=work.program, progress=False)
     assert work.results() == work.results(local) and len(work.results()) == 80
     assert not left_on_nodes()
+
+
+def halted_cell(raylet):
+    """Halts a cell of the program that runs on a node: its process, the worker that waits for it, and its name."""
+    halted = []
+
+    def halt_one():
+        for process in (int(entry.name) for entry in pathlib.Path("/proc").glob("[0-9]*")):
+            try:
+                words = pathlib.Path(f"/proc/{process}/cmdline").read_text().split("\0")
+                if words[1:2] == ["cell"] and parent_of(worker := parent_of(process)) == raylet:
+                    os.kill(process, signal.SIGSTOP)
+                    halted.append((process, worker, words[3]))
+                    return True
+            except OSError:  # it has ended
+                continue
+        return False
+
+    wait_until(halt_one, "a cell on a node")
+    return halted[0]
+
+
+def test_a_worker_and_a_node_are_killed_in_the_middle_of_cells_of_the_program(tmp_path, cluster):
+    program = os.environ.get("SELVEDGE_PROGRAM")
+    if not program:
+        pytest.skip("SELVEDGE_PROGRAM is not set")
+    made, second = cluster
+    file, out, results = write_shots(tmp_path, 40), tmp_path / "out", []
+    options = {"program": program, "progress": False}
+
+    def by_ray():
+        results.append(fleet.run(file, out, "ray", address=made.address, **options))
+
+    thread = threading.Thread(target=by_ray, daemon=True)
+    thread.start()
+    wait_until(lambda: len(list(out.glob("cells/c*"))) >= 10, "ten results")
+    raylets = [node.all_processes["raylet"][0].process.pid for node in (made.head_node, second)]
+    halted = [halted_cell(raylet) for raylet in raylets]
+    assert not any((out / "cells" / name).exists() for *_, name in halted)
+    os.kill(halted[0][1], signal.SIGKILL)
+    os.kill(raylets[1], signal.SIGKILL)
+    os.kill(halted[1][1], signal.SIGKILL)
+    for process, *_ in halted:
+        wait_until(lambda: gone(process), "the end of a halted cell")
+    thread.join()
+    names = sorted(f"c{k:03}" for k in range(40))
+    assert sorted(results[0].done) == names and not results[0].failed and not results[0].missing
+    listed = [line.split()[0] for line in results[0].gathered.splitlines()]
+    assert sorted(name for name in listed if name in names) == names
+
+    local = tmp_path / "local"
+    assert sorted(fleet.run(file, local, **options).done) == names
+
+    def positions(folder):
+        cells = (json.loads((folder / "cells" / name / "cell.json").read_text()) for name in names)
+        return [(cell["key"], cell["positions_hash"]) for cell in cells]
+
+    assert positions(out) == positions(local) and len({of for _, of in positions(local)}) == 40
 
 
 def test_the_same_run_again_does_nothing_anew_and_a_refused_cell_is_named(tmp_path, cluster):

@@ -1,0 +1,189 @@
+#include "collision/contact/pair_lanes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace selvedge {
+namespace {
+
+constexpr int corner_count = 4;
+// Each is several times what the rounding of single precision can come to.
+constexpr float slack_part = 1e-6F;    // of the sums of products that a height is made of
+constexpr float slack_least = 1e-37F;  // what underflow may take from a height [m2]
+constexpr double widened = 1 + 8e-6;   // for lengths
+// Lengths from which on squares and their products do not underflow.
+constexpr float least_direction = 1e-20F;  // squared [m2, or m4 for a normal]
+constexpr double least_distance = 1e-6;    // [m]
+constexpr float most_reach = 1e9F;         // up to which they do not overflow [m]
+
+using Eight [[gnu::vector_size(32), gnu::aligned(32)]] = float;
+using EightBits [[gnu::vector_size(32), gnu::aligned(32)]] = int;
+struct EightVec3 {
+  Eight x, y, z;
+};
+struct EightPolygon {
+  EightVec3 corner[corner_count];
+};
+
+[[gnu::always_inline]] inline Eight smaller(const Eight& a, const Eight& b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline Eight larger(const Eight& a, const Eight& b) { return a > b ? a : b; }
+[[gnu::always_inline]] inline Eight size(const Eight& a) { return a < 0 ? -a : a; }
+[[gnu::always_inline]] inline Eight sum_of_sizes(const EightVec3& a) { return size(a.x) + size(a.y) + size(a.z); }
+[[gnu::always_inline]] inline EightVec3 plus(const EightVec3& a, const Eight& s, const EightVec3& b) {
+  return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+[[gnu::always_inline]] inline EightVec3 minus(const EightVec3& a, const EightVec3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline Eight dot(const EightVec3& a, const EightVec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+[[gnu::always_inline]] inline EightVec3 cross(const EightVec3& a, const EightVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+[[gnu::always_inline]] inline EightVec3 choose(const EightBits& first, const EightVec3& a, const EightVec3& b) {
+  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+}
+[[gnu::always_inline]] inline EightPolygon polygon(const float (&corner)[corner_count][3][PairLanes::width]) {
+  EightPolygon p;
+  for (int k = 0; k < corner_count; ++k) __builtin_memcpy(&p.corner[k], corner[k], sizeof p.corner[k]);
+  return p;
+}
+
+// The boundary's point nearest to the origin; roughly, since it only serves as a direction.
+[[gnu::always_inline]] inline EightVec3 nearest_of_boundary(const EightPolygon& p) {
+  EightVec3 nearest = p.corner[0];
+  Eight least = dot(nearest, nearest);
+  for (int k = 0; k < corner_count; ++k) {
+    const EightVec3 edge = minus(p.corner[(k + 1) % corner_count], p.corner[k]);
+    // 0 where the edge has no length
+    const Eight along = smaller(larger(-dot(p.corner[k], edge) / dot(edge, edge), Eight{}), Eight{} + 1.0F);
+    const EightVec3 point = plus(p.corner[k], along, edge);
+    const Eight square = dot(point, point);
+    nearest = choose(square < least, point, nearest);
+    least = smaller(square, least);
+  }
+  return nearest;
+}
+
+[[gnu::always_inline]] inline EightVec3 normal_of(const EightPolygon& p) {
+  const EightVec3 normal = cross(minus(p.corner[1], p.corner[0]), minus(p.corner[corner_count - 1], p.corner[0]));
+  const EightVec3 other{-normal.x, -normal.y, -normal.z};
+  return choose(dot(normal, p.corner[0]) < 0, other, normal);
+}
+
+// Undefined where a coordinate is.
+[[gnu::always_inline]] inline Eight reach_of(const EightPolygon& p) {
+  Eight reach{};
+  for (const EightVec3& corner : p.corner) reach += sum_of_sizes(corner);
+  return reach;
+}
+
+// A lower bound of the corners' heights along a direction, times the direction's length. `reach`: at least the sum of
+// the sizes of a corner's coordinates, also of those that it was computed from.
+[[gnu::always_inline]] inline Eight height_along(const EightVec3& direction, const EightPolygon& p,
+                                                 const Eight& reach) {
+  Eight least = dot(p.corner[0], direction);
+  for (int k = 1; k < corner_count; ++k) least = smaller(dot(p.corner[k], direction), least);
+  return least - (slack_part * reach * sum_of_sizes(direction) + slack_least);
+}
+
+// Is a height, times the direction's length, more than the distance?
+[[gnu::always_inline]] inline EightBits above(const Eight& height, const EightVec3& direction, const Eight& distance) {
+  const Eight square = dot(direction, direction);
+  return (height > 0) & (square > least_direction) & (height * height > distance * distance * square);
+}
+
+// The distance of a polygon is its least height along the direction to its nearest point: one of the boundary, or the
+// foot of the normal. Whatever the direction, the least height is a lower bound.
+[[gnu::always_inline]] inline void stays_away(const PairLanes& pairs, float distance, EightBits& bits) {
+  const EightPolygon start = polygon(pairs.start), change = polygon(pairs.change);
+  Eight most{};
+  for (const EightVec3& corner : change.corner) most = larger(dot(corner, corner), most);
+  Eight least;
+  for (int i = 0; i < PairLanes::width; ++i) least[i] = distance + static_cast<float>(widened) * std::sqrt(most[i]);
+  const Eight reach = reach_of(start) + reach_of(change);
+  const EightVec3 nearest = nearest_of_boundary(start), normal = normal_of(start);
+  bits = (reach < most_reach) & (above(height_along(nearest, start, reach), nearest, least) |
+                                 above(height_along(normal, start, reach), normal, least));
+}
+
+// Motion is straight, so that what is above a plane at both ends is above it all the way. The direction is that of the
+// middle.
+[[gnu::always_inline]] inline void apart_all_the_way(const PairLanes& pairs, float distance, EightBits& bits) {
+  const EightPolygon start = polygon(pairs.start), change = polygon(pairs.change);
+  EightPolygon middle, end;
+  for (int k = 0; k < corner_count; ++k) {
+    middle.corner[k] = plus(start.corner[k], Eight{} + 0.5F, change.corner[k]);
+    end.corner[k] = plus(start.corner[k], Eight{} + 1.0F, change.corner[k]);
+  }
+  const Eight reach = reach_of(start) + reach_of(change);
+  const EightVec3 nearest = nearest_of_boundary(middle), normal = normal_of(middle);
+  const auto apart = [&](const EightVec3& along) __attribute__((always_inline)) {
+    return above(smaller(height_along(along, start, reach), height_along(along, end, reach)), along,
+                 Eight{} + distance);
+  };
+  bits = (reach < most_reach) & (apart(nearest) | apart(normal));
+}
+
+float widened_distance(double distance) { return static_cast<float>(widened * std::max(distance, least_distance)); }
+
+unsigned bits_plain(const EightBits& flags) {
+  unsigned bits = 0;
+  for (int i = 0; i < PairLanes::width; ++i) bits |= static_cast<unsigned>(flags[i] & (1 << i));
+  return bits;
+}
+unsigned stays_away_plain(const PairLanes& pairs, double distance) {
+  EightBits bits;
+  stays_away(pairs, widened_distance(distance), bits);
+  return bits_plain(bits);
+}
+unsigned apart_plain(const PairLanes& pairs, double distance) {
+  EightBits bits;
+  apart_all_the_way(pairs, widened_distance(distance), bits);
+  return bits_plain(bits);
+}
+constexpr PairKernels plain_kernels{stays_away_plain, apart_plain};
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] unsigned stays_away_avx2(const PairLanes& pairs, double distance) {
+  EightBits bits;
+  stays_away(pairs, widened_distance(distance), bits);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(bits)));
+}
+[[gnu::target("avx2")]] unsigned apart_avx2(const PairLanes& pairs, double distance) {
+  EightBits bits;
+  apart_all_the_way(pairs, widened_distance(distance), bits);
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(bits)));
+}
+constexpr PairKernels avx2_kernels{stays_away_avx2, apart_avx2};
+#endif
+
+}  // namespace
+
+void PairLanes::set(int lane, const NodePair& pair, const Points& x0, const Points& x1) {
+  const auto& n = pair.nodes;
+  const auto put = [&](int corner, int from, int to) {
+    const Vec3 before = row(x0, n[to]) - row(x0, n[from]), moved = (row(x1, n[to]) - row(x1, n[from])) - before;
+    for (int k = 0; k < 3; ++k) {
+      start[corner][k][lane] = static_cast<float>(before[k]);
+      change[corner][k][lane] = static_cast<float>(moved[k]);
+    }
+  };
+  const bool face = pair.kind == PairKind::vertex_face;
+  put(0, 0, face ? 1 : 2);
+  put(1, 0, face ? 2 : 3);
+  put(2, face ? 0 : 1, 3);
+  put(3, face ? 0 : 1, face ? 3 : 2);
+}
+
+const PairKernels& pair_kernels() {
+#if defined(__x86_64__)
+  static const bool avx2 = __builtin_cpu_supports("avx2");
+  return avx2 ? avx2_kernels : plain_kernels;
+#else
+  return plain_kernels;
+#endif
+}
+
+}  // namespace selvedge
