@@ -109,6 +109,34 @@ Complaints wide_lines(const std::string& file, const std::string& text) {
   return complaints;
 }
 
+// Lines with which git marks a conflict that a merge has left.
+Complaints conflict_markers(const std::string& file, const std::string& text) {
+  static const std::string ours = std::string(7, '<') + ' ', theirs = std::string(7, '>') + ' ';
+  Complaints complaints;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number)
+    if (line.starts_with(ours) || line.starts_with(theirs))
+      complaints.push_back(at(file, number) + "a merge has left a conflict");
+  return complaints;
+}
+
+// Every text file of the repository, by path from the root; what .gitignore names at the root is left out.
+Texts all_texts() {
+  static const std::set<std::string> foreign = {".git", "build", "out", ".cache", "shared"};
+  Texts found;
+  for (fs::recursive_directory_iterator entry(root), end; entry != end; ++entry) {
+    if (entry.depth() == 0 && foreign.contains(entry->path().filename().string())) {
+      entry.disable_recursion_pending();
+    } else if (entry->is_regular_file()) {
+      std::string text = read(entry->path());
+      if (text.find('\0') == std::string::npos)
+        found[entry->path().lexically_relative(root).generic_string()] = std::move(text);
+    }
+  }
+  return found;
+}
+
 Texts pages() {
   Texts all = texts("docs", {".md"});
   for (const std::string page : {"README.md", "CHANGELOG.md"}) all[page] = read(root / page);
@@ -188,6 +216,21 @@ TEST_CASE("modules: prose of the documents is at most 120 columns wide", "[modul
   CHECK(wide_lines("a.md", "```\n" + wide + "\n```\n    " + wide + "\n| " + wide + " |\n").empty());
   CHECK(wide_lines("a.md", "```\n```\n* " + wide + "\n").size() == 1);
   CHECK(wide_lines("a.md", "<!-- written by: it -->\n" + wide + "\n").empty());
+}
+
+TEST_CASE("modules: no file holds a conflict of a merge", "[modules]") {
+  Complaints all;
+  const Texts files = all_texts();
+  for (const auto& [file, text] : files)
+    for (const std::string& complaint : conflict_markers(file, text)) all.push_back(complaint);
+  CHECK(listed(all) == "");
+  for (const std::string some : {"Makefile", "docs/hybrid.md", "configs/demo.yaml", "tests/test_modules.cpp"})
+    CHECK(files.contains(some));
+
+  const std::string seven(7, '<');
+  CHECK(conflict_markers("a.md", "a\n" + seven + " HEAD\n") == Complaints{"a.md:2: a merge has left a conflict"});
+  CHECK(conflict_markers("a.md", std::string(7, '>') + " branch").size() == 1);
+  CHECK(conflict_markers("a.md", seven + "\n " + seven + " HEAD\n=======\n").empty());
 }
 
 TEST_CASE("modules: headers do not define two types of one name", "[modules]") {

@@ -30,16 +30,17 @@ std::vector<int> one_sided_groups(const Surface& cloth, const std::vector<char>&
   return up;
 }
 
-enum class Passage { beside, through, on_face, unclear };
+enum class Passage { beside, forwards, backwards, on_face, unclear };
 
-// How the segment from p to q, a point outside of the body, passes a face. Unclear: through an edge or along the face.
+// How the segment from p to q, a point outside of the body, passes a face: from its back forwards, or the other way.
+// Unclear: through an edge or along the face.
 Passage passage(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const int from = orient3d(a, b, c, p), to = orient3d(a, b, c, q);
   if (from != 0 && from == to) return Passage::beside;
   if (from == 0 && triangles_intersect(p, p, p, a, b, c)) return Passage::on_face;
   const auto [least, most] = std::minmax({orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)});
   if (least < 0 && most > 0) return Passage::beside;
-  if (from * to < 0 && (least > 0 || most < 0)) return Passage::through;
+  if (from * to < 0 && (least > 0 || most < 0)) return from < 0 ? Passage::forwards : Passage::backwards;
   const bool has_area = orient2d(a, b, c, 0) != 0 || orient2d(a, b, c, 1) != 0 || orient2d(a, b, c, 2) != 0;
   return has_area ? Passage::unclear : Passage::beside;
 }
@@ -47,7 +48,8 @@ Passage passage(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, cons
 struct Ray {
   int vertex;
   Vec3 from, to;
-  bool odd = false, on_face = false, unclear = false;
+  int winding = 0;  // how often the body winds round the vertex
+  bool on_face = false, unclear = false;
 };
 
 void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surface& body, const Points& y) {
@@ -73,7 +75,7 @@ void trace(std::vector<Ray>& rays, std::span<const ExactBox> faces, const Surfac
           Ray& ray = rays[i];
           const int* v = body.triangles.data() + 3 * near[k];
           const Passage found = passage(ray.from, ray.to, row(y, v[0]), row(y, v[1]), row(y, v[2]));
-          ray.odd ^= found == Passage::through;
+          ray.winding += (found == Passage::forwards) - (found == Passage::backwards);
           ray.on_face |= found == Passage::on_face;
           ray.unclear |= found == Passage::unclear;
         });
@@ -112,7 +114,8 @@ std::vector<char> inside_body(const Surface& cloth, const Points& x, const std::
     }
     trace(open, faces, body, y);
     // A ray may stay unclear far from the origin, where rounding hides the tilt. Its vertex counts as inside.
-    for (const Ray& ray : open) inside[ray.vertex] = !ray.on_face && (ray.unclear ? round + 1 == most_rounds : ray.odd);
+    for (const Ray& ray : open)
+      inside[ray.vertex] = !ray.on_face && (ray.unclear ? round + 1 == most_rounds : ray.winding != 0);
     std::erase_if(open, [&](const Ray& ray) { return ray.on_face || !ray.unclear || round + 1 == most_rounds; });
   }
   for (int v = 0; v < cloth.vertex_count; ++v) inside[v] = inside[group[v]];

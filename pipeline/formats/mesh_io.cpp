@@ -9,6 +9,7 @@
 #include "collision/geometry/surface.hpp"
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
+#include "pipeline/formats/polygon.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 
@@ -86,6 +87,9 @@ Mesh read_mesh(const fs::path& path) {
   if (mesh.x.rows() == 0) throw Error("has no vertices", name, "name a mesh file with vertices and faces");
   if (mesh.look.empty() && mesh.corners.size() != 3 * mesh.corner_begin.size())  // polygons
     mesh.look = plain_look(static_cast<std::size_t>(mesh.x.rows()), mesh.corners, mesh.corner_begin);
+  if (const int crossed = crossed_quads(mesh.x, mesh.corners, mesh.corner_begin); crossed > 0)
+    mesh.warnings.push_back(fmt::format("{}: the edges of {} cross; {} read with the corners in order round it", name,
+                                        counted(crossed, "face"), by_number(crossed, "it is", "each is")));
   for (auto& [folder, file] : mesh.material_files) folder = path.parent_path();
   leave_out_repeated(mesh, name);
   if (mesh.triangles.rows() == 0) throw Error("has no faces", name, "name a mesh file with vertices and faces");

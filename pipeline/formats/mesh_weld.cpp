@@ -1,6 +1,7 @@
 #include "pipeline/formats/mesh_weld.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -67,6 +68,18 @@ Surface surface_of(const Points& x, const Triangles& triangles) {
 
 int coincident_vertices(const Points& x) { return lower_elsewhere(same_places(x)); }
 
+int coincident_triangles(const Points& x, const Triangles& triangles) {
+  const std::vector<int> places = same_places(x);
+  std::vector<std::array<int, 3>> placed;
+  for (int t = 0; t < static_cast<int>(triangles.rows()); ++t)
+    if (std::optional<std::array<int, 3>> at = placed_corners(triangles, t, places)) {
+      std::ranges::sort(*at);
+      placed.push_back(*at);
+    }
+  std::ranges::sort(placed);
+  return static_cast<int>(std::ranges::unique(placed).size());
+}
+
 double weld_distance(const Points& x, const Triangles& triangles) { return distance_of(x, surface_of(x, triangles)); }
 
 Welding weldable(const Points& x, const Triangles& triangles) {
@@ -84,6 +97,9 @@ Welding weld(Mesh& mesh, const std::string& name, std::optional<double> distance
     throw Error(fmt::format("is to be welded within {:g} of its units, and its edges are {:.3g} long on average",
                             *distance, edge),
                 name, "give a distance below half of that, or none: the default is a thousandth of it");
+  if (2 * coincident_triangles(mesh.x, mesh.triangles) == mesh.triangles.rows())
+    throw Error("cannot be welded: each of its triangles lies on another", name,
+                "delete one side of a two-sided mesh; give layers of cloth a gap");
   const Joining joining = joining_of(mesh.x, before, distance.value_or(distance_of(mesh.x, before)));
   join_at(joining.stands_for, mesh, name);
   const int crowded = surface_of(mesh.x, mesh.triangles).nonmanifold_edges;

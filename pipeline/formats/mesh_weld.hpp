@@ -11,6 +11,9 @@ namespace selvedge {
 // The number of vertices at the place of a lower one (same_places.hpp).
 int coincident_vertices(const Points& x);
 
+// The number of triangles whose corners are at the places of an earlier one's, in any order.
+int coincident_triangles(const Points& x, const Triangles&);
+
 // Before vertices are joined: numbers[v] is the number that v gets. The look keeps the vertices and faces of the file.
 void renumber_look(const std::vector<int>& numbers, Mesh&);
 
@@ -34,7 +37,8 @@ std::string unwelded_text(int joined, const std::string& cure);
 // unit; default: weld_distance). A vertex becomes the lowest of those that it is joined with, and vertices are numbered
 // anew in their order. Triangles that lose their area are removed and counted in a warning; vertices that have to stay
 // apart are counted in another. `name` is the mesh's. Sets Mesh::welded. Throws Error for a distance above half the
-// mean edge, and where triangles at one place would make an edge of more than two triangles.
+// mean edge, where triangles at one place would make an edge of more than two triangles, and where each triangle lies
+// on another one.
 Welding weld(Mesh&, const std::string& name, std::optional<double> distance = {});
 
 // Joins each vertex into the one that stands for it, the lowest of its set, as `weld` does, without looking at edges.

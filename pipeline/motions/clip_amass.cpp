@@ -46,6 +46,8 @@ std::vector<Part> rotation_parts(const Npz& npz) {
       fail(npz, "poses", fmt::format("has {} columns", columns), "known are SMPL (72), SMPL+H (156) and SMPL-X (165)");
     return {{"poses", columns / 3}};
   }
+  if (!npz.has("root_orient"))
+    fail(npz, "poses", "is missing, and so is `root_orient`", "it is no AMASS file, or only a part of one");
   std::vector<Part> parts = {{"root_orient", 1}, {"pose_body", 21}};
   if (npz.has("pose_jaw") && npz.has("pose_eye") && npz.has("pose_hand"))
     parts.insert(parts.end(), {{"pose_jaw", 1}, {"pose_eye", 2}, {"pose_hand", 30}});
@@ -112,7 +114,7 @@ Clip read_amass(const std::filesystem::path& path, const Vec3& pelvis, std::vect
   const std::vector<Part> parts = rotation_parts(npz);
   const NpyArray<double> trans = table(npz, "trans", -1, 3);
   const Index frames = trans.shape[0];
-  if (frames == 0) fail(npz, "trans", "has no frames", "");
+  if (frames == 0) fail(npz, "trans", "has no frames", "leave the file out, or write it anew where it was made");
 
   Index joints = 0;
   for (const Part& part : parts) joints += part.joints;

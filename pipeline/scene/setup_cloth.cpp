@@ -99,11 +99,17 @@ void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warning
   const int count = coincident_vertices(part.rest);
   if (count == 0) return;
   const int joined = weldable(part.rest, part.mesh.triangles).joined;
-  warnings.push_back(fmt::format(
-      "cloth `{}`: {} where {} and {} not joined to {}; `weld: true` under `mesh` joins {}, `seams` join chosen ones",
-      part.name, counted(count, "vertex lies", "vertices lie"), by_number(count, "another does", "others do"),
-      by_number(count, "is", "are"), by_number(count, "it", "them"),
-      joined == count ? by_number(count, "it", "them") : fmt::format("{} of them", joined)));
+  const std::string welding =
+      fmt::format("`weld: true` under `mesh` joins {}, ",
+                  joined == count ? by_number(count, "it", "them") : fmt::format("{} of them", joined));
+  warnings.push_back(fmt::format("cloth `{}`: {} where {} and {} not joined to {}; {}`seams` join chosen ones",
+                                 part.name, counted(count, "vertex lies", "vertices lie"),
+                                 by_number(count, "another does", "others do"), by_number(count, "is", "are"),
+                                 by_number(count, "it", "them"), joined > 0 ? welding : ""));
+  if (const int layered = coincident_triangles(part.rest, part.mesh.triangles); layered > 0)
+    warnings.push_back(fmt::format(
+        "cloth `{}`: {} on another; if its mesh is two-sided, delete one of the sides, since both are cloth", part.name,
+        counted(layered, "triangle lies", "triangles lie")));
 }
 
 // A garment of a file whose seams are not welded falls apart along them.

@@ -1,13 +1,18 @@
 #include "pipeline/shapes/outward_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "collision/exact/outward_faces.hpp"
 #include "collision/geometry/counted.hpp"
+#include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/same_places.hpp"
+#include "collision/geometry/welded_surface.hpp"
 
 namespace selvedge {
 namespace {
@@ -44,26 +49,91 @@ std::string of_shells(int count, int all) {
 }
 
 void say(const std::string& mesh, const Findings& found, std::vector<std::string>& warnings) {
-  const auto tell = [&](int count, const std::string& what) {
-    if (count > 0) warnings.push_back(mesh + ": " + of_shells(count, found.shells) + " " + what);
+  const auto tell = [&](int count, const std::string& one, const std::string& many, const std::string& what) {
+    if (count > 0)
+      warnings.push_back(mesh + ": " + of_shells(count, found.shells) + " " + by_number(count, one, many) + " " + what);
   };
-  tell(found.over, "faced inwards and was turned outwards, " + counted(found.over_triangles, "triangle"));
-  tell(found.mixed, fmt::format("had triangles that faced the other way than the rest, {} were turned", found.odd));
-  tell(found.cavities, "faces inwards inside of another: taken for a cavity, where cloth is outside");
-  tell(found.open,
-       fmt::format("is open ({} with one triangle): cloth that gets inside is not known to be there and is not pushed "
+  tell(found.over, "faced inwards and was", "faced inwards and were",
+       "turned outwards, " + counted(found.over_triangles, "triangle"));
+  tell(found.mixed, "had", "had",
+       fmt::format("triangles that faced the other way than the rest, {} were turned", found.odd));
+  tell(found.cavities, "faces", "face", "inwards inside of another: taken for a cavity, where cloth is outside");
+  tell(found.open, "is", "are",
+       fmt::format("open ({} with one triangle): cloth that gets inside is not known to be there and is not pushed "
                    "out; close its holes if it is to be solid",
                    counted(found.open_edges, "edge")));
-  tell(found.branching,
-       fmt::format("has {} with more than two triangles, so that nothing is inside of it; part what touches there",
+  tell(found.branching, "has", "have",
+       fmt::format("{} with more than two triangles, so that nothing is inside of it; part what touches there",
                    counted(found.branching_edges, "edge")));
-  tell(found.one_sided, "has one side only, so that nothing is inside of it");
+  tell(found.one_sided, "has", "have", "one side only, so that nothing is inside of it");
+}
+
+// A triangle by the places of its corners, and whether their order is an odd permutation of the ascending one.
+struct PlacedTriangle {
+  std::array<int, 3> places;
+  bool odd;
+  int number;
+  auto operator<=>(const PlacedTriangle&) const = default;
+};
+
+std::vector<PlacedTriangle> placed_triangles(const Triangles& triangles, const std::vector<int>& places) {
+  std::vector<PlacedTriangle> placed;
+  for (int t = 0; t < static_cast<int>(triangles.rows()); ++t)
+    if (std::optional<std::array<int, 3>> at = placed_corners(triangles, t, places)) {  // the lowest comes first
+      const bool odd = (*at)[1] > (*at)[2];
+      if (odd) std::swap((*at)[1], (*at)[2]);
+      placed.push_back({*at, odd, t});
+    }
+  std::ranges::sort(placed);
+  return placed;
+}
+
+// The triangles that are to stay, ascending. A connected piece of a surface is two-sided if all of its triangles lie on
+// one that faces the other way: of those that lie on each other the first one then stays.
+std::vector<int> without_backs(const Triangles& triangles, const std::vector<int>& places) {
+  const std::vector<PlacedTriangle> placed = placed_triangles(triangles, places);
+  std::vector<std::pair<std::size_t, std::size_t>> alike;  // ranges of triangles at the same places
+  for (std::size_t begin = 0, end = 0; begin < placed.size(); begin = end) {
+    while (end < placed.size() && placed[end].places == placed[begin].places) ++end;
+    alike.emplace_back(begin, end);
+  }
+  DisjointSets pieces(static_cast<int>(places.size()));
+  for (const PlacedTriangle& one : placed)
+    for (const int k : {1, 2}) pieces.join(one.places[0], one.places[k]);
+  std::vector<char> two_sided(places.size(), 1), stays(static_cast<std::size_t>(triangles.rows()), 1);
+  for (const auto& [begin, end] : alike)
+    if (placed[begin].odd == placed[end - 1].odd) two_sided[pieces.root(placed[begin].places[0])] = 0;
+  for (const auto& [begin, end] : alike) {
+    if (!two_sided[pieces.root(placed[begin].places[0])]) continue;
+    int first = placed[begin].number;
+    for (std::size_t i = begin; i < end; ++i) {
+      stays[placed[i].number] = 0;
+      first = std::min(first, placed[i].number);
+    }
+    stays[first] = 1;
+  }
+  std::vector<int> kept;
+  for (std::size_t t = 0; t < stays.size(); ++t)
+    if (stays[t]) kept.push_back(static_cast<int>(t));
+  return kept;
+}
+
+void leave_out_backs(const std::string& name, const std::vector<int>& places, Triangles& triangles,
+                     std::vector<std::string>& warnings) {
+  const std::vector<int> kept = without_backs(triangles, places);
+  const auto backs = static_cast<int>(triangles.rows() - std::ssize(kept));
+  if (backs == 0) return;
+  triangles = Triangles(triangles(kept, Eigen::all));
+  warnings.push_back(fmt::format(
+      "{}: the surface is two-sided; {} on another and face{} the other way, and {} left out", name,
+      counted(backs, "triangle lies", "triangles lie"), by_number(backs, "s", ""), by_number(backs, "is", "are")));
 }
 
 }  // namespace
 
 void turn_outward(const std::string& name, const NamedVertices& groups, std::span<const Points> frames,
                   const std::vector<int>& places, Triangles& triangles, std::vector<std::string>& warnings) {
+  leave_out_backs(name, places, triangles, warnings);
   OutwardFaces outward = face_outward(triangles, frames, places);
   triangles = std::move(outward.triangles);
   std::vector<int> group_of(static_cast<std::size_t>(frames.empty() ? 0 : frames[0].rows()), -1);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/geometry/error.hpp"
 #include "pipeline/compare/compare_run.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -45,11 +46,15 @@ std::optional<double> energy_decay(const State& start, const State& end, const S
   return (energy_of(converged, start) - energy_of(converged, end)) / reference->lost;
 }
 
+std::filesystem::path scene_file(const BenchRequest& request, const std::string& scene) {
+  return request.configs / (scene + ".yaml");
+}
+
 BenchMember run_member(const BenchRequest& request, const std::string& scene, int size) {
   std::vector<std::string> overrides{
       fmt::format("cloths.0.{}.resolution={}", scene == "tube" ? "tube" : "rectangle", size)};
   if (request.frames) overrides.push_back(fmt::format("run.frames={}", *request.frames));
-  const std::filesystem::path file = request.configs / (scene + ".yaml");
+  const std::filesystem::path file = scene_file(request, scene);
   const Setup setup = read_setup(file, overrides);
   const Start start = *prepare(setup);
   const std::unique_ptr<Stepper> stepper = make_stepper(setup);
@@ -87,6 +92,10 @@ void write_results(const BenchRequest& request, const BenchResult& result, const
 }  // namespace
 
 BenchResult bench(const BenchRequest& request) {
+  for (const std::string& scene : request.scenes)
+    if (has_part(request, "scenes") && !std::filesystem::exists(scene_file(request, scene)))
+      throw Error("there is no such scene", scene_file(request, scene).string(),
+                  "scenes are files of configs/bench; run from the repository's root, or give --configs");
   make_folder(request.out);
   BenchResult result;
   if (has_part(request, "detection")) {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "collision/geometry/counted.hpp"
+#include "collision/geometry/error.hpp"
 #include "collision/geometry/stopwatch.hpp"
 #include "collision/search/intersections.hpp"
 #include "pipeline/cells/do_cells.hpp"
@@ -140,6 +141,8 @@ struct WardrobeWork {
 WardrobeWork read_work(const WardrobeRequest& request) {
   WardrobeWork work{request, {}, {}, {}, {}, {}};
   const std::filesystem::path outfits = request.configs / "outfits.yaml", clips = request.configs / "clips.yaml";
+  if (!std::filesystem::exists(outfits))
+    throw Error("there is no such file", outfits.string(), "run from the repository's root, or give --configs");
   const std::vector<Wear> wears = chosen(everything(read_wardrobe(outfits)), request.wear, "garment or outfit");
   const std::vector<ClipEntry> all_clips = chosen(read_clip_split(clips), request.clips, "clip");
   for (const ClipEntry& clip : all_clips)

@@ -163,10 +163,11 @@ void add_shape(const SampleOptions& options, std::uint64_t seed, int index, cons
     section["shape"].numbers.assign(shape.data(), shape.data() + shape.size());
     section["shape"].given = true;
     if (index > 0) motion = go();
-    if (motion.poses.size() < 2) section["clip"].fail("has fewer than two poses", "leave it out");
+    motion = in_time_steps(std::move(motion));
+    if (motion.poses.size() < 2) section["clip"].fail("has fewer than two poses, at 30 a second", "leave it out");
     TrainingBody& body = body_of(options, section, shape, first, who, world);
     body.weight += cast.weights[k];
-    body.clips.push_back({cast.clips[k].first, in_time_steps(std::move(motion)), cast.weights[k]});
+    body.clips.push_back({cast.clips[k].first, std::move(motion), cast.weights[k]});
   }
 }
 

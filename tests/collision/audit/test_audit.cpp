@@ -289,6 +289,22 @@ TEST_CASE("audit: what is inside, by the audit's test and by the solver's", "[au
   CHECK(mixed > 15);
 }
 
+TEST_CASE("audit: inside of two parts that overlap is inside, and in a cavity is not", "[audit]") {
+  Mesh second = lattice_cube(6);
+  second.x.rowwise() += Vec3(2, 1, 1.5).transpose();
+  const Mesh overlap = together(lattice_cube(6), second);
+  Mesh hole = lattice_cube(2);
+  hole.x.rowwise() += Vec3(2, 2, 2).transpose();
+  hole.surface.triangles.col(1).swap(hole.surface.triangles.col(2));
+  const Mesh room =
+      together(lattice_cube(6), {make_surface(hole.surface.vertex_count, hole.surface.triangles), hole.x});
+  const Mesh cloth = grid(2, {2.3, 2.4, 2.6}, 0.4 * ex, 0.5 * ez);
+  CHECK(audit(cloth, {&overlap}).obstacle_pairs.empty());
+  CHECK(audit(cloth, {&overlap}).inside_vertices == 9);
+  CHECK(audit(cloth, {&room}).obstacle_pairs.empty());
+  CHECK(audit(cloth, {&room}).inside_vertices == 0);
+}
+
 TEST_CASE("audit: undefined coordinates are counted and left out", "[audit]") {
   const Mesh flat = grid(8, Vec3::Zero(), ex, ez);
   Mesh both = together(flat, grid(8, {3.5, -3.75, 0.125}, ey, 0.5 * ez));

@@ -128,6 +128,13 @@ TEST_CASE("Vertices at one place are counted, and joined on request", "[mesh_io]
   CHECK(coincident_vertices(line) == 199);
 }
 
+TEST_CASE("A mesh all of whose triangles lie on others is not welded", "[mesh_io]") {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  Mesh mesh = read("a.obj", square + square + "f 1 2 3 4\nf 8 7 6 5\n");
+  CHECK(coincident_triangles(mesh.x, mesh.triangles) == 2);
+  CHECK_THROWS_WITH(weld(mesh, "a.obj"), Contains("a.obj: cannot be welded: each of its triangles lies on another"));
+}
+
 TEST_CASE("PLY: text and both byte orders give the same mesh", "[mesh_io]") {
   const Mesh text = read("a.ply", ascii_ply), little = read("a.ply", binary_ply(false)),
              big = read("a.PLY", binary_ply(true));
@@ -170,6 +177,13 @@ TEST_CASE("Triangles that repeat are left out and counted, the rest of a mesh's 
   CHECK_THAT(mesh.warnings[1], Contains("2 duplicate triangles"));
   CHECK_THAT(mesh.warnings[2], Contains("1 non-manifold edge "));
   CHECK_THAT(mesh.warnings[3], Contains("1 isolated vertex "));
+}
+
+TEST_CASE("The back of a two-sided polygon is a repeated one", "[mesh_io]") {
+  const Mesh mesh = read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 4 3 2 1\n");
+  CHECK(mesh.triangles.rows() == 2);
+  REQUIRE(mesh.warnings.size() == 1);
+  CHECK_THAT(mesh.warnings[0], Contains("2 duplicate triangles"));
 }
 
 TEST_CASE("Bad OBJ files are refused with file and line", "[mesh_io]") {

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <numbers>
+#include <set>
 
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
@@ -65,6 +66,46 @@ TEST_CASE("Polygons that are not convex are cut inside", "[polygon]") {
     CHECK(smallest_area(x) > 0);
     CHECK(whole_area(x) == Approx(area));
   }
+}
+
+TEST_CASE("Polygons that lie on each other are cut along the same diagonals", "[polygon]") {
+  // A square and its back, with vertices of their own, from each corner; then another square.
+  Points x(10, 3);
+  x << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0;
+  const auto places = [&](const Triangles& triangles, int polygon) {
+    std::set<std::set<int>> found;
+    for (int t : {2 * polygon, 2 * polygon + 1})
+      found.insert({triangles(t, 0) % 4, triangles(t, 1) % 4, triangles(t, 2) % 4});
+    return found;
+  };
+  for (int first = 0; first < 4; ++first) {
+    INFO(first);
+    std::vector<int> corners{0, 1, 2, 3};
+    for (int k = 0; k < 4; ++k) corners.push_back(4 + (first + 3 * k) % 4);  // the other way round
+    for (const int v : {1, 8, 9, 2}) corners.push_back(v);
+    const Triangles cut = cut_polygons(x, corners, {0, 4, 8}).unaryExpr([&](int k) { return corners[k]; });
+    CHECK(places(cut, 0) == places(cut, 1));
+    for (int t : {2, 3})
+      CHECK((row(x, cut(t, 1)) - row(x, cut(t, 0))).cross(row(x, cut(t, 2)) - row(x, cut(t, 0))).z() == -1);
+    CHECK(cut.row(4) == Eigen::RowVector3i(1, 8, 9));
+  }
+}
+
+TEST_CASE("A flat quad whose edges cross is cut as the one whose edges do not", "[polygon]") {
+  const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.05}, {0, 1, 0}};
+  for (const std::array<std::size_t, 4>& order : {std::array<std::size_t, 4>{0, 1, 3, 2}, {1, 3, 2, 0}, {3, 1, 2, 0}}) {
+    std::vector<Vec3> crossed;
+    for (const std::size_t k : order) crossed.push_back(square[k]);
+    const double area = whole_area(crossed);
+    CHECK(std::abs(area) == Approx(1).margin(1e-12));
+    for (const auto& t : polygon_triangles(crossed)) CHECK(signed_area(crossed, t) * area > 0.4);
+  }
+  // Folded ones, in space or in the plane, are no crossed ones.
+  const std::vector<Vec3> tent{{0, 0, 0}, {1, 0.2, 0.3}, {1, 1, 0}, {0.2, 1, 0.3}},
+      arrow{{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {1, 1, 0}};
+  CHECK(polygon_triangles(tent) == std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}});
+  CHECK(smallest_area(arrow) > 0);
+  CHECK(crossed_quads(Points::Zero(4, 3), {0, 1, 2, 3}, {0}) == 0);
 }
 
 TEST_CASE("A polygon without area, or of very many corners, still ends", "[polygon]") {

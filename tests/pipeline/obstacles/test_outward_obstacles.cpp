@@ -126,6 +126,44 @@ TEST_CASE("Commands turn the body they are given and say so", "[outward]") {
   CHECK(pushed.before.energy == push_mesh(push_request).before.energy);
 }
 
+TEST_CASE("Of a two-sided body one side counts, and it has an inside", "[outward]") {
+  // The backs with vertices of their own, and a soup in which no triangle shares a vertex.
+  const Folder folder("two_sided");
+  const Mesh arm = read_mesh(write_arm(folder, "arm.obj", false));
+  const auto n = static_cast<int>(arm.x.rows()), m = static_cast<int>(arm.triangles.rows());
+  Points x(2 * n, 3), soup_x(6 * m, 3);
+  x << arm.x, arm.x;
+  Triangles both(2 * m, 3), soup(2 * m, 3);
+  both << arm.triangles, flipped(arm.triangles).array() + n;
+  for (int t = 0; t < 2 * m; ++t)
+    for (int k = 0; k < 3; ++k) {
+      soup(t, k) = 3 * t + k;
+      soup_x.row(soup(t, k)) = x.row(both(t, k));
+    }
+  write_obj(folder.path / "both.obj", x, both);
+  write_obj(folder.path / "soup.obj", soup_x, soup);
+  for (const std::string name : {"both.obj", "soup.obj"}) {
+    INFO(name);
+    const Setup setup = sleeved(folder, "mesh: " + name);
+    REQUIRE(setup.warnings.size() == 1);
+    CHECK_THAT(setup.warnings[0], Contains(name + ": the surface is two-sided; " + std::to_string(m) + " triangles"));
+    const RunSummary summary = fake::run(setup, *make_stepper(setup), folder.path / (name + ".run"));
+    CHECK(summary.worst_inside > 0);  // the sleeve starts in the arm
+    CHECK(TrajectoryReader(folder.path / (name + ".run") / "run.h5").frame(8).inside_vertices == 0);
+  }
+  // Two blocks side by side share a face, back to back, and keep it.
+  const testing::Solid left = testing::block({-0.2, -0.1, -0.1}, {0, 0.1, 0.1}, 2);
+  const testing::Solid other = testing::block({0, -0.1, -0.1}, {0.2, 0.1, 0.1}, 2);
+  Triangles triangles(left.surface.triangles.rows() + other.surface.triangles.rows(), 3);
+  triangles << left.surface.triangles, other.surface.triangles.array() + left.surface.vertex_count;
+  Points blocks(left.x.rows() + other.x.rows(), 3);
+  blocks << left.x, other.x;
+  write_obj(folder.path / "blocks.obj", blocks, triangles);
+  const Setup beside = sleeved(folder, "mesh: blocks.obj");
+  CHECK(beside.scene.obstacles[0].surface.triangles.rows() == triangles.rows());
+  CHECK(warnings_with(beside.warnings, "two-sided") == 0);
+}
+
 TEST_CASE("What is open and might be meant as solid is said to be open, by mesh", "[outward]") {
   const Folder folder("open_obstacles");
   const auto arm = fake::whole(write_arm(folder, "arm.obj", false));

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/suites/bench.hpp"
+#include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_bench_counts {
 
@@ -29,6 +30,16 @@ TEST_CASE("bench: counts of work a frame stand beside the times", "[bench]") {
   CHECK(json["audits"] == 3);
   CHECK(json["ms_worst"] == 400);
   CHECK(json["run"]["solves"] == 12);
+}
+
+TEST_CASE("bench: a scene that is not there is named before anything is timed", "[bench]") {
+  const fake::Folder folder("bench_lost");
+  BenchRequest request;
+  request.scenes = {"lost"};
+  request.configs = folder.path;
+  request.out = folder.path / "out";
+  CHECK_THROWS_WITH(bench(request), Catch::Contains("lost.yaml: there is no such scene"));
+  CHECK_FALSE(std::filesystem::exists(request.out));
 }
 
 }  // namespace selvedge::test_bench_counts
