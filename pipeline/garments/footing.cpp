@@ -35,12 +35,14 @@ std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, co
       const double there = height + std::max(0.0, (to - height * along).norm() - beside);
       if (there < most) gap[v] = std::min(gap[v], there);
     };
-    // Most cubes near a foot hold skin of its own part, which does not face it.
+    // Most blocks near a foot hold skin of its own part, which does not face it.
     body.grid.for_each_row_near(from, most + beside, [&](int first_cube, int last_cube) {
-      for (int cube = first_cube; cube <= last_cube; ++cube) {
-        const int first = body.grid.first(cube), end = body.grid.first(cube + 1);
-        if (first == end || least_cosine(body.normals_from[first], along) > facing) continue;
-        for (int p = first; p < end; ++p) look_at(p);
+      const int end = body.grid.first(last_cube + 1);
+      for (int p = body.grid.first(first_cube), next; p < end; p = next) {
+        const int block = p / PosedSkin::in_a_block;
+        next = std::min(end, (block + 1) * PosedSkin::in_a_block);
+        if (least_cosine(body.normal_boxes[block], along) > facing) continue;
+        for (int q = p; q < next; ++q) look_at(q);
       }
     });
   }
@@ -54,15 +56,15 @@ PosedSkin::PosedSkin(const Surface& body, const Points& posed)
       grid(posed, cell),
       x_in_order(posed(grid.order(), Eigen::all)),
       normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {
-  normals_from.resize(static_cast<std::size_t>(posed.rows()));
-  for (int cube = 0; cube < grid.cubes(); ++cube)
-    for (int first = grid.first(cube), p = first; p < grid.first(cube + 1); ++p)
-      for (int k = 0; k < 3; ++k) {
-        const double along = normals_in_order(p, k);
-        NormalBox& box = normals_from[first];
-        box.lo[k] = p == first ? along : std::min(box.lo[k], along);
-        box.hi[k] = p == first ? along : std::max(box.hi[k], along);
-      }
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const int places = static_cast<int>(posed.rows());
+  normal_boxes.resize((places + in_a_block - 1) / in_a_block, {{none, none, none}, {-none, -none, -none}});
+  for (int p = 0; p < places; ++p)
+    for (int k = 0; k < 3; ++k) {
+      NormalBox& box = normal_boxes[p / in_a_block];
+      box.lo[k] = std::min(box.lo[k], normals_in_order(p, k));
+      box.hi[k] = std::max(box.hi[k], normals_in_order(p, k));
+    }
 }
 
 Footing footing_of(const Points& x, const PosedSkin& rest) {

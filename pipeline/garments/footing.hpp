@@ -26,7 +26,8 @@ struct PosedSkin {
   Points x;  // [m]
   CellGrid grid;
   Points x_in_order, normals_in_order;  // in the grid's order
-  std::vector<NormalBox> normals_from;  // at the first place of each cube that has vertices: round their normals
+  static constexpr int in_a_block = 8;
+  std::vector<NormalBox> normal_boxes;  // of so many places after each other
 };
 
 // The footing of a surface x that is worn by the body at rest [m]. The parts of the body must be apart there.
