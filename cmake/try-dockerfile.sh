@@ -25,7 +25,8 @@ if [[ -n "${CACHE:-}" ]]; then
     >>"$work.log"
   mkdir -p "$work/root/.cache"
   cp -r "$CACHE" "$work/root/.cache/ccache"
-  inside+=(CI=true CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_NOHASHDIR=1
+  inside+=(CI=true ${LANG:+LANG=$LANG}  # which ccache counts among what an object depends on
+    CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_NOHASHDIR=1
     CCACHE_BASEDIR=/selvedge CCACHE_SLOPPINESS=pch_defines,time_macros)
 fi
 

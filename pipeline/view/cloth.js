@@ -209,9 +209,9 @@ function makeFigure(run) {
     object.frustumCulled = false;
   });
 
-  // Edges are drawn where they leave something of a triangle to be seen; `pixels`: of a metre.
+  // Edges appear where they leave something of a triangle to be seen: from ten pixels to twenty. `pixels`: of a metre.
   const edge = edgeLength(run.metric);
-  function outline(pixels) { marks[2].material.opacity = pixels * edge > 10 ? 0.8 : 0; }
+  function outline(pixels) { marks[2].material.opacity = 0.8 * Math.min(1, Math.max(0, pixels * edge / 10 - 1)); }
 
   let drawn = -1;
   function moveTo(next) {
