@@ -18,6 +18,13 @@ void prepare_inertia(const Scene& scene, const Eigen::VectorXd& masses, StepPote
   step.ballistic.rowwise() += h * h * problem.acceleration.transpose();
   step.inertia.resize(vertices);
   for (int i = 0; i < vertices; ++i) step.inertia[i] = masses[i] / (h * h);
+  if (const VertexStarts* starts = problem.starts)
+    for (int i = 0; i < vertices; ++i) {
+      const double squared = starts->position_h[i] * starts->velocity_h[i];  // in place of h^2
+      step.ballistic.row(i) =
+          starts->x.row(i) + starts->position_h[i] * starts->v.row(i) + squared * problem.acceleration.transpose();
+      step.inertia[i] = masses[i] / squared;
+    }
   step.diagonal = step.inertia;
 
   step.drag.clear();

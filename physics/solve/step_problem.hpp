@@ -20,6 +20,13 @@ struct AddedTerm {
   std::function<void(const Points& x, Points& gradient, std::vector<ContactBlock>& blocks)> add_derivatives;
 };
 
+// Where the inertia of each vertex starts: with v1 the velocity at the step's end,
+//   v1 = (x1 - x) / position_h,   m (v1 - v) / velocity_h = forces(x1).
+struct VertexStarts {
+  std::vector<double> position_h, velocity_h;  // [s]
+  Points x, v;
+};
+
 // The data of one step, in the cloth's joint numbering.
 struct StepProblem {
   double h = 0;                // [s]
@@ -35,6 +42,7 @@ struct StepProblem {
   bool warm_start = false;         // x is the end of an earlier solve of the same step: no other first guess is tried
   const StopFlag* stop = nullptr;  // asked in each iteration
   int most_iterations = std::numeric_limits<int>::max();  // a hard limit
+  const VertexStarts* starts = nullptr;                   // of inertia alone; null: h, x0 and v0
 };
 
 }  // namespace selvedge

@@ -76,7 +76,7 @@ class ConventionalStepper final : public Stepper {
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   ResolveOptions resolve_options(const StepWork&) const;
   StepProblem problem_of(const StepWork&, const StepStart&, const Points& pins, const AddedTerm&) const;
-  bool continues_history(const Substep&) const;
+  bool of_second_order(const StepWork&, const Substep&) const;
   void note_imbalance(const StepProblem&, const Points& x, Substep&, StepReport&);
   void set_velocities(const StepProblem&, const Points& x, Substep&) const;
   bool solve_freely(StepWork&, Substep&, const StepStart&);
@@ -124,16 +124,10 @@ AddedTerm added_term(const StepWork& work, const Points& x0, double h) {
   return work.extras.added ? work.extras.added(x0, h) : AddedTerm{};
 }
 
-// Whether BDF2 can use the history: its step has the same length, and no pin changes its speed by an edge per substep.
-bool ConventionalStepper::continues_history(const Substep& s) const {
-  const StepHistory& history = s.start.history;
-  if (options_.integrator != Integrator::bdf2 || s.attempt != SubstepAttempt::first || history.h != s.h) return false;
-  for (std::size_t k = 0; k < scene_.pins.size(); ++k) {
-    const int pin = scene_.pins[k];
-    const Vec3 now = row(s.pins, static_cast<int>(k)) - row(s.start.nodes, pin);
-    if ((now - (row(s.start.nodes, pin) - row(history.x, pin))).norm() > edge_length_) return false;
-  }
-  return true;
+// Whether the substep is BDF2's where nothing touches. Not if a pin changes its speed by an edge per substep.
+bool ConventionalStepper::of_second_order(const StepWork& work, const Substep& s) const {
+  return options_.integrator == Integrator::bdf2 && s.attempt == SubstepAttempt::first && !work.extras.added &&
+         !work.left_alone.any() && !pins_jump(scene_, s.start.history, s.start.nodes, s.pins, edge_length_);
 }
 
 void ConventionalStepper::note_imbalance(const StepProblem& problem, const Points& x, Substep& s, StepReport& report) {
@@ -143,8 +137,9 @@ void ConventionalStepper::note_imbalance(const StepProblem& problem, const Point
 
 // Velocities from the change of positions, without the torque that implicit Euler adds.
 void ConventionalStepper::set_velocities(const StepProblem& problem, const Points& x, Substep& s) const {
-  s.v = (x - *problem.x0) / problem.h;
-  const bool euler = problem.h == s.h;
+  if (problem.starts) s.v = end_velocities(s.starts, s.solved, x, s.h);
+  if (!problem.starts) s.v = (x - *problem.x0) / problem.h;
+  const bool euler = problem.h == s.h && !problem.starts;
   if (euler) euler_torque_.take_back(problem, x, s.unbalanced, s.v);
 }
 
@@ -152,11 +147,12 @@ void ConventionalStepper::set_velocities(const StepProblem& problem, const Point
 bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepStart& start) {
   const int n = scene_.surface.vertex_count;
   const AddedTerm added = added_term(work, start.x, start.h);
-  const StepProblem problem = problem_of(work, start, s.pins, added);
+  StepProblem problem = problem_of(work, start, s.pins, added);
+  if (s.by_vertex && start.h == s.h) solve_.choose_starts(s, {}, problem);
   Points nodes = s.nodes, x = nodes.topRows(n);
   const NewtonReport newton = solve_.once(problem, x, work.report);
   if (!newton.finite || newton.stopped || !x.allFinite()) return false;
-  nodes.topRows(n) = x;
+  nodes.topRows(n) = s.solved = x;
   if (has_contact() && !solve_.impacts(s.start.nodes, nodes, work.report).empty()) return false;
   work.report.unsolved += newton.left;
   note_imbalance(problem, x, s, work.report);
@@ -217,6 +213,8 @@ void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Subst
 SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const StepProblem& problem,
                                             const NewtonReport& newton, const Contacts& contacts, Points& x) {
   const int n = scene_.surface.vertex_count;
+  if (s.by_vertex) mark_near(s.start.history, contacts, s.contact);
+  s.solved = x;
   solve_.stick(s, problem, contacts, x, work.report);
   s.nodes.topRows(n) = x;
   ResolveOptions options = resolve_options(work);
@@ -246,6 +244,7 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
   }
   work.report.unsolved += newton.left;
   set_velocities(problem, s.nodes.topRows(n), s);
+  if (s.by_vertex) mark_moved(wanted, s.nodes, s.contact);
   s.touched = s.touched || !contacts.terms.empty() || resolved.impulses + resolved.zones > 0;
   return SubstepOutcome::clean;
 }
@@ -253,7 +252,8 @@ SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const St
 // Bridson, Fedkiw and Anderson 2002: an implicit solve with proximities, then impulses and zones for impacts.
 SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   const int n = scene_.surface.vertex_count;
-  const bool smooth = continues_history(s) && !work.extras.added;
+  s.by_vertex = of_second_order(work, s);
+  const bool smooth = s.by_vertex && s.start.history.h == s.h && s.start.history.free();
   const StepStart start{s.h, s.start.nodes.topRows(n), s.start.v};
   if (s.carried.rows() > 0) solve_.choose_guess(problem_of(work, start, s.pins, {}), s, work.report);
   const auto solve_smoothly = [&] { return solve_freely(work, s, bdf2_start(s.start.history, start.x, start.v)); };
@@ -299,12 +299,13 @@ Substep ConventionalStepper::begin_substep(const StepWork& work, const SubstepSt
 }
 
 void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState& now) {
+  const int n = scene_.surface.vertex_count;
   ++work.report.substeps;
   if (work.report.path.substeps.empty()) work.report.path.start = now.nodes;
   work.report.path.substeps.push_back({s.nodes, work.left_alone});
   now.history = {};
-  if (options_.integrator == Integrator::bdf2 && !s.touched)
-    now.history = {s.h, now.nodes.topRows(scene_.surface.vertex_count), std::move(now.v)};
+  if (options_.integrator == Integrator::bdf2 && (s.by_vertex || !s.touched))
+    now.history = {s.h, now.nodes.topRows(n), std::move(now.v), std::move(s.contact)};
   now.v = std::move(s.v);
   now.nodes = std::move(s.nodes);
   now.forces = std::move(s.forces);

@@ -10,8 +10,9 @@
 
 namespace selvedge {
 
-// bdf2 is of second order where nothing touches. It falls back to implicit Euler in a substep with contact or after a
-// jump of pins, in the first substep after these, and where the substep's length has changed.
+// bdf2 is of second order where contact does not begin, vertex by vertex (vertex_history.hpp). All of the cloth is
+// implicit Euler's in a substep in which pins jump, in one that is taken again because its impact zones did not
+// converge, and where contact leaves pairs alone.
 enum class Integrator { implicit_euler, bdf2 };
 
 // Where the first solve of a step begins. inertia: where the cloth goes as it moves. carried: carried_guess

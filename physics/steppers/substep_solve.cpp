@@ -24,6 +24,7 @@ SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& euler
       stage_(stage),
       options_(options),
       solver_(scene, euler),
+      parts_(scene),
       friction_(features_of(scene).friction),
       slip_speed_(euler.slip_speed),
       edge_length_(mean_edge_length(scene)),
@@ -58,6 +59,14 @@ std::vector<Impact> SubstepSolve::impacts(const Points& nodes0, const Points& no
   return found;
 }
 
+void SubstepSolve::choose_starts(Substep& s, const Contacts& contacts, StepProblem& problem) const {
+  s.contact.resize(parts_.part.size(), VertexContact::none);
+  mark_near(s.start.history, contacts, s.contact);
+  const auto rules = vertex_rules(parts_, s.start.history, s.h, contacts, s.contact);
+  s.starts = starts_of(rules, s.start.history, *problem.x0, *problem.v0, s.h);
+  problem.starts = &s.starts;
+}
+
 NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points& x, Contacts& contacts,
                                         StepReport& report) {
   const Points& nodes0 = s.start.nodes;
@@ -72,6 +81,7 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     problem.tolerance_scale = pass > 1 || (calm && friction) ? options_.friction_tolerance
                               : pass == 0 && !calm           ? options_.first_tolerance
                                                              : 1;
+    if (s.by_vertex) choose_starts(s, contacts, problem);
     const NewtonReport newton = once(problem, x, report);
     if (!newton.finite || newton.stopped) return newton;
     s.nodes.topRows(x.rows()) = x;

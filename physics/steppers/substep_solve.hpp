@@ -8,6 +8,7 @@
 #include "physics/solve/implicit_euler.hpp"
 #include "physics/steppers/contact_stage.hpp"
 #include "physics/steppers/substeps.hpp"
+#include "physics/steppers/vertex_history.hpp"
 
 namespace selvedge {
 
@@ -29,6 +30,12 @@ struct Substep {
   int parts = 1;                            // parts into which it should be cut
   Eigen::VectorXd inverse_mass = {};        // of all nodes, with those of obstacles that give way
   std::vector<double> friction_loads = {};  // the normal forces that bounded friction in the last solve, if it does [N]
+  // With BDF2: whether each vertex has a rule of its own, its contact, where it starts, and where the last solve left
+  // it.
+  bool by_vertex = false;
+  std::vector<VertexContact> contact = {};
+  VertexStarts starts = {};
+  Points solved = {};
   std::shared_ptr<const ContactForces> forces = {};  // of contact, at its end; null: not asked for
 };
 
@@ -40,6 +47,8 @@ class SubstepSolve {
 
   // x: first guess in, minimiser out.
   NewtonReport once(const StepProblem&, Points& x, StepReport&);
+  // Chooses the rule of each vertex, as vertex_rules says, and lets the problem's inertia start where these have it.
+  void choose_starts(Substep&, const Contacts&, StepProblem&) const;
   // The impacts of the straight motion.
   std::vector<Impact> impacts(const Points& nodes0, const Points& nodes1, StepReport&);
   // Begins at the carried guess, if the potential without contact is lower there than where the nodes are.
@@ -64,6 +73,7 @@ class SubstepSolve {
   ContactStage& stage_;
   SubstepOptions options_;
   ImplicitEuler solver_;
+  PinnedParts parts_;
   bool friction_;
   double slip_speed_, edge_length_, deep_;
   int most_newton_;

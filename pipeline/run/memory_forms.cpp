@@ -26,6 +26,7 @@ constexpr std::array known_forms{
     MemoryForm{.name = "bdf2.h", .columns = 1},
     MemoryForm{.name = "bdf2.x", .rows_of = RowsOf::vertices, .positions = true},
     MemoryForm{.name = "bdf2.v", .rows_of = RowsOf::vertices, .most = 1e9},
+    MemoryForm{.name = "bdf2.contact", .rows_of = RowsOf::vertices, .columns = 1, .most = 2, .whole = true},
     // physics/steppers/recovering_stepper.cpp
     MemoryForm{.name = "recovering.last_clean", .rows_of = RowsOf::vertices, .positions = true},
     MemoryForm{.name = "recovering.last_clean_obstacles", .rows_of = RowsOf::obstacle_vertices, .positions = true},

@@ -147,8 +147,8 @@ const Options<ConventionalOptions>& solver_options() {
       "solver", "Time integration with Newton's method, and contact.",
       OptionRows<O>{choice("integrator", &O::integrator,
                            {{"implicit_euler", Integrator::implicit_euler}, {"bdf2", Integrator::bdf2}},
-                           "Time integrator. `bdf2` is second-order accurate with less damping where nothing touches, "
-                           "and implicit Euler elsewhere; the stepper `icm` lacks it."),
+                           "Time integrator. `bdf2` is second-order accurate with less damping, and implicit Euler for "
+                           "vertices that begin to touch something; the stepper `icm` lacks it."),
                     choice("guess", &O::guess, {{"inertia", FirstGuess::inertia}, {"carried", FirstGuess::carried}},
                            "Where the first solve of a step begins. `inertia`: where velocities take the cloth. "
                            "`carried`: where it moves with its body, if the potential is lower there.")} +

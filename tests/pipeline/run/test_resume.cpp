@@ -161,7 +161,8 @@ TEST_CASE("A block of memory is refused that its stepper has not left in the sce
   const auto misfit_of = [](const MemoryBlock& block) { return misfit({block}, fake::scene()).value_or(""); };
   for (const Known& k :
        {Known{"bdf2.h", 1, 1, RowsOf::none, false}, Known{"bdf2.x", 25, 3, RowsOf::vertices, true},
-        Known{"bdf2.v", 25, 3, RowsOf::vertices, false}, Known{"recovering.last_clean", 25, 3, RowsOf::vertices, true},
+        Known{"bdf2.v", 25, 3, RowsOf::vertices, false}, Known{"bdf2.contact", 25, 1, RowsOf::vertices, false},
+        Known{"recovering.last_clean", 25, 3, RowsOf::vertices, true},
         Known{"recovering.last_clean_obstacles", 8, 3, RowsOf::obstacle_vertices, true},
         Known{"resting.seconds", 1, 1, RowsOf::cloths, false}, Known{"resting.place", 25, 3, RowsOf::vertices, true},
         Known{"resting.air", 2, 3, RowsOf::none, false}, Known{"hybrid.trust", 1, 3, RowsOf::none, false},
