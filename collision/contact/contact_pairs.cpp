@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "collision/contact/exemption.hpp"
 #include "collision/contact/pair_motion.hpp"
@@ -60,7 +59,7 @@ struct Wanted {
   const std::vector<char>& marks;  // by node: only pairs with a marked one; empty: all pairs
   const Exemption* left_out;       // may be null
   const PairMotion* motion;        // only pairs that may come within `reach`; null: all pairs
-  const Points &x0, &x1;
+  const Points& x0;
   double reach;
 
   void add(const NodePair& pair, FoundPairs& found) const {
@@ -74,13 +73,12 @@ struct Wanted {
   // Lists those of the untested pairs that may come near.
   void test(FoundPairs& found) const {
     PairLanes lanes;
-    for (int i = 0; i < found.untested_count; ++i) lanes.set(i, found.untested[i], x0, x1);
-    const unsigned away = pair_kernels().stays_away(lanes, reach);
+    for (int i = 0; i < found.untested_count; ++i) lanes.set(i, found.untested[i], x0, motion->displacements());
+    std::array<float, PairLanes::width> gaps;
+    const unsigned away = pair_kernels().stays_away(lanes, reach + motion->rounding(), gaps.data());
     for (int i = 0; i < found.untested_count; ++i) {
       if (away >> i & 1) continue;
-      const std::optional<double> gap = gap_if_near(*motion, found.untested[i], x0, reach);
-      if (!gap) continue;
-      found.gap.push_back(*gap);
+      found.gap.push_back(gaps[i]);
       found.pairs.push_back(found.untested[i]);
     }
     found.untested_count = 0;
@@ -167,39 +165,44 @@ PairSearch::PairSearch(const ContactWorld& world) : world_(world), cloth_(*world
 }
 
 // Leaves that a traversal may come to have boxes of their vertices and edges: of two that overlap one is marked.
-void PairSearch::fill(bool only_marked) {
+void PairSearch::fill(bool only_marked, Among among) {
   const auto box = [](const SearchPart& part, int node) { return part.tree.bvh.nodes[node].box; };
   cloth_.fill([&](int node) {
-    if (!only_marked || cloth_.marks[node] || meets(cloth_, box(cloth_, node), true)) return true;
-    return std::ranges::any_of(obstacles_,
-                               [&](const SearchPart& obstacle) { return meets(obstacle, box(cloth_, node), true); });
+    const bool near_marked = only_marked && !cloth_.marks[node];
+    if (among != Among::obstacles && (!near_marked || meets(cloth_, box(cloth_, node), true))) return true;
+    return among != Among::cloth && std::ranges::any_of(obstacles_, [&](const SearchPart& obstacle) {
+             return meets(obstacle, box(cloth_, node), near_marked);
+           });
   });
+  if (among == Among::cloth) return;
   for (SearchPart& obstacle : obstacles_)
     obstacle.fill([&](int node) { return meets(cloth_, box(obstacle, node), only_marked && !obstacle.marks[node]); });
 }
 
-void PairSearch::prepare(const Points& x0, const Points& x1, double radius, bool ends, const std::vector<char>& marks) {
+void PairSearch::prepare(const Points& x0, const Points& x1, double radius, bool ends, const std::vector<char>& marks,
+                         Among among) {
   const auto move = [&](SearchPart& part) {
     part.move(x0, x1, radius, ends);
     if (!marks.empty()) part.mark(marks);
   };
   move(cloth_);
-  std::ranges::for_each(obstacles_, move);
-  fill(!marks.empty());
+  if (among != Among::cloth) std::ranges::for_each(obstacles_, move);
+  fill(!marks.empty(), among);
 }
 
 void PairSearch::collect(const Points& x0, const Points& x1, double radius, const PairMotion* motion,
-                         std::vector<NodePair>& pairs, std::vector<double>& gap, const std::vector<char>& marks) {
+                         std::vector<NodePair>& pairs, std::vector<double>& gap, const std::vector<char>& marks,
+                         Among among) {
   pairs.clear();
   gap.clear();
   // Boxes at both ends separate more pairs than boxes of whole motions only where motions are longer than the radius.
   const bool ends = !((x1 - x0).rowwise().squaredNorm().maxCoeff() <= radius * radius);
-  prepare(x0, x1, radius, ends, marks);
+  prepare(x0, x1, radius, ends, marks, among);
   const auto side = [&](const SearchPart& p) {
     return Side{p, ends ? p.node_ends.data() : nullptr, marks.empty() ? nullptr : p.marks.data()};
   };
   const Side cloth = side(cloth_);
-  const Wanted wanted{world_, marks, left_out_, motion, x0, x1, radius};
+  const Wanted wanted{world_, marks, left_out_, motion, x0, radius};
   std::int64_t overlapping = 0;
   const auto gather_with = [&](const Side& other, bool same) {
     const int parts = visit_in_parts(BvhTraversal{cloth.bvh(), other.bvh(), same, nullptr, cloth.node_ends,
@@ -218,8 +221,9 @@ void PairSearch::collect(const Points& x0, const Points& x1, double radius, cons
     }
   };
   try {
-    if (world_.self) gather_with(cloth, true);
-    for (const SearchPart& obstacle : obstacles_) gather_with(side(obstacle), false);
+    if (world_.self && among != Among::obstacles) gather_with(cloth, true);
+    if (among != Among::cloth)
+      for (const SearchPart& obstacle : obstacles_) gather_with(side(obstacle), false);
   } catch (const TooManyPairs&) {
     std::vector<NodePair>().swap(pairs);
     std::vector<double>().swap(gap);
@@ -232,13 +236,13 @@ void PairSearch::collect(const Points& x0, const Points& x1, double radius, cons
 void PairSearch::find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
                       const std::vector<char>& marks) {
   std::vector<double> none;
-  collect(x0, x1, radius, nullptr, pairs, none, marks);
+  collect(x0, x1, radius, nullptr, pairs, none, marks, Among::all);
 }
 
 void PairSearch::find_near(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
-                           std::vector<double>& gap, const std::vector<char>& marks) {
+                           std::vector<double>& gap, const std::vector<char>& marks, Among among) {
   const PairMotion motion(x0, x0, x1);
-  collect(x0, x1, radius, &motion, pairs, gap, marks);
+  collect(x0, x1, radius, &motion, pairs, gap, marks, among);
 }
 
 double rest_distance(const ContactWorld& world, const NodePair& pair) {

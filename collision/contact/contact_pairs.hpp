@@ -25,7 +25,7 @@ struct SearchTally {
 // What one part of a search has found.
 struct FoundPairs {
   std::vector<NodePair> pairs;
-  std::vector<double> gap;                          // at the start, of each pair; empty if nobody asked for it [m]
+  std::vector<double> gap;                          // of each pair (find_near); empty if nobody asked for it [m]
   std::int64_t overlapping = 0;                     // pairs whose boxes overlap
   std::array<NodePair, PairLanes::width> untested;  // found, but not yet tested for coming near
   int untested_count = 0;
@@ -38,6 +38,9 @@ struct FoundPairs {
   }
 };
 
+// The kinds of pairs: of the cloth with itself, and of the cloth with obstacles.
+enum class Among { all, cloth, obstacles };
+
 // Finds vertex-face and edge-edge pairs that may come within `radius` of each other while all nodes move straight from
 // x0 to x1; misses none. Every vertex and edge belongs to one triangle, so that each pair is found once (representative
 // triangles, Curtis, Tamstorf and Manocha 2008). Holds trees, which are caches.
@@ -49,21 +52,22 @@ class PairSearch {
   // `pairs` is empty.
   void find(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
             const std::vector<char>& marks = {});
-  // The same, without the pairs that cannot come within the radius by the motion of their nodes; `gap` gets how far
-  // apart the others are at x0 [m].
+  // The same, without pairs that cannot come within the radius by the motion of their nodes. `gap` gets lower bounds of
+  // how far apart the others are at x0, to some millionths of the lengths involved [m]. Only pairs of the wanted kind
+  // are found.
   void find_near(const Points& x0, const Points& x1, double radius, std::vector<NodePair>& pairs,
-                 std::vector<double>& gap, const std::vector<char>& marks = {});
+                 std::vector<double>& gap, const std::vector<char>& marks = {}, Among among = Among::all);
   // From now on searches leave these pairs out; null: none. Keeps the pointer.
   void leave_out(const Exemption* exemption) { left_out_ = exemption; }
   const ContactWorld& world() const { return world_; }
   const SearchTally& tally() const { return tally_; }
 
  private:
-  void prepare(const Points& x0, const Points& x1, double radius, bool ends, const std::vector<char>& marks);
-  void fill(bool only_marked);
+  void prepare(const Points& x0, const Points& x1, double radius, bool ends, const std::vector<char>& marks, Among);
+  void fill(bool only_marked, Among);
   // `motion` null: all pairs with overlapping boxes, and no gaps.
   void collect(const Points& x0, const Points& x1, double radius, const PairMotion* motion,
-               std::vector<NodePair>& pairs, std::vector<double>& gap, const std::vector<char>& marks);
+               std::vector<NodePair>& pairs, std::vector<double>& gap, const std::vector<char>& marks, Among);
 
   const ContactWorld& world_;
   const Exemption* left_out_ = nullptr;

@@ -8,12 +8,11 @@ namespace {
 
 constexpr int corner_count = 4;
 // Each is several times what the rounding of single precision can come to.
-constexpr float slack_part = 1e-6F;    // of the sums of products that a height is made of
-constexpr float slack_least = 1e-37F;  // what underflow may take from a height [m2]
-constexpr double widened = 1 + 8e-6;   // for lengths
+constexpr float slack_part = 1e-6F;                        // of the sums of products that a height is made of
+constexpr float slack_least = 1e-37F;                      // what underflow may take from a height [m2]
+constexpr double widened = 1 + 4e-6, narrowed = 1 - 4e-6;  // for lengths
 // Lengths from which on squares and their products do not underflow.
 constexpr float least_direction = 1e-20F;  // squared [m2, or m4 for a normal]
-constexpr double least_distance = 1e-6;    // [m]
 constexpr float most_reach = 1e9F;         // up to which they do not overflow [m]
 
 using Eight [[gnu::vector_size(32), gnu::aligned(32)]] = float;
@@ -88,24 +87,30 @@ struct EightPolygon {
   return least - (slack_part * reach * sum_of_sizes(direction) + slack_least);
 }
 
-// Is a height, times the direction's length, more than the distance?
-[[gnu::always_inline]] inline EightBits above(const Eight& height, const EightVec3& direction, const Eight& distance) {
-  const Eight square = dot(direction, direction);
-  return (height > 0) & (square > least_direction) & (height * height > distance * distance * square);
+[[gnu::always_inline]] inline Eight root(const Eight& value) {
+  Eight result;
+  for (int i = 0; i < PairLanes::width; ++i) result[i] = std::sqrt(value[i]);
+  return result;
+}
+
+// The same as a length, or 0.
+[[gnu::always_inline]] inline Eight distance_along(const EightVec3& direction, const EightPolygon& p,
+                                                   const Eight& reach) {
+  const Eight height = height_along(direction, p, reach), square = dot(direction, direction);
+  const EightBits sound = (height > 0) & (square > least_direction) & (reach < most_reach);
+  return sound ? static_cast<float>(narrowed) * height / root(square) : Eight{};
 }
 
 // The distance of a polygon is its least height along the direction to its nearest point: one of the boundary, or the
 // foot of the normal. Whatever the direction, the least height is a lower bound.
-[[gnu::always_inline]] inline void stays_away(const PairLanes& pairs, float distance, EightBits& bits) {
+[[gnu::always_inline]] inline void stays_away(const PairLanes& pairs, float distance, Eight& gaps, EightBits& bits) {
   const EightPolygon start = polygon(pairs.start), change = polygon(pairs.change);
   Eight most{};
   for (const EightVec3& corner : change.corner) most = larger(dot(corner, corner), most);
-  Eight least;
-  for (int i = 0; i < PairLanes::width; ++i) least[i] = distance + static_cast<float>(widened) * std::sqrt(most[i]);
-  const Eight reach = reach_of(start) + reach_of(change);
-  const EightVec3 nearest = nearest_of_boundary(start), normal = normal_of(start);
-  bits = (reach < most_reach) & (above(height_along(nearest, start, reach), nearest, least) |
-                                 above(height_along(normal, start, reach), normal, least));
+  const Eight reach = reach_of(start);
+  gaps =
+      larger(distance_along(nearest_of_boundary(start), start, reach), distance_along(normal_of(start), start, reach));
+  bits = (gaps > distance + static_cast<float>(widened) * root(most)) & (reach_of(change) < most_reach);
 }
 
 // Motion is straight, so that what is above a plane at both ends is above it all the way. The direction is that of the
@@ -118,24 +123,24 @@ struct EightPolygon {
     end.corner[k] = plus(start.corner[k], Eight{} + 1.0F, change.corner[k]);
   }
   const Eight reach = reach_of(start) + reach_of(change);
-  const EightVec3 nearest = nearest_of_boundary(middle), normal = normal_of(middle);
   const auto apart = [&](const EightVec3& along) __attribute__((always_inline)) {
-    return above(smaller(height_along(along, start, reach), height_along(along, end, reach)), along,
-                 Eight{} + distance);
+    return smaller(distance_along(along, start, reach), distance_along(along, end, reach)) > distance;
   };
-  bits = (reach < most_reach) & (apart(nearest) | apart(normal));
+  bits = apart(nearest_of_boundary(middle)) | apart(normal_of(middle));
 }
 
-float widened_distance(double distance) { return static_cast<float>(widened * std::max(distance, least_distance)); }
+float widened_distance(double distance) { return static_cast<float>(widened * distance); }
 
 unsigned bits_plain(const EightBits& flags) {
   unsigned bits = 0;
   for (int i = 0; i < PairLanes::width; ++i) bits |= static_cast<unsigned>(flags[i] & (1 << i));
   return bits;
 }
-unsigned stays_away_plain(const PairLanes& pairs, double distance) {
+unsigned stays_away_plain(const PairLanes& pairs, double distance, float* gaps) {
+  Eight found;
   EightBits bits;
-  stays_away(pairs, widened_distance(distance), bits);
+  stays_away(pairs, widened_distance(distance), found, bits);
+  __builtin_memcpy(gaps, &found, sizeof found);
   return bits_plain(bits);
 }
 unsigned apart_plain(const PairLanes& pairs, double distance) {
@@ -146,9 +151,11 @@ unsigned apart_plain(const PairLanes& pairs, double distance) {
 constexpr PairKernels plain_kernels{stays_away_plain, apart_plain};
 
 #if defined(__x86_64__)
-[[gnu::target("avx2")]] unsigned stays_away_avx2(const PairLanes& pairs, double distance) {
+[[gnu::target("avx2")]] unsigned stays_away_avx2(const PairLanes& pairs, double distance, float* gaps) {
+  Eight found;
   EightBits bits;
-  stays_away(pairs, widened_distance(distance), bits);
+  stays_away(pairs, widened_distance(distance), found, bits);
+  __builtin_memcpy(gaps, &found, sizeof found);
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(bits)));
 }
 [[gnu::target("avx2")]] unsigned apart_avx2(const PairLanes& pairs, double distance) {
@@ -161,13 +168,12 @@ constexpr PairKernels avx2_kernels{stays_away_avx2, apart_avx2};
 
 }  // namespace
 
-void PairLanes::set(int lane, const NodePair& pair, const Points& x0, const Points& x1) {
+void PairLanes::set(int lane, const NodePair& pair, const Points& x0, const Points& displacements) {
   const auto& n = pair.nodes;
   const auto put = [&](int corner, int from, int to) {
-    const Vec3 before = row(x0, n[to]) - row(x0, n[from]), moved = (row(x1, n[to]) - row(x1, n[from])) - before;
     for (int k = 0; k < 3; ++k) {
-      start[corner][k][lane] = static_cast<float>(before[k]);
-      change[corner][k][lane] = static_cast<float>(moved[k]);
+      start[corner][k][lane] = static_cast<float>(x0(n[to], k) - x0(n[from], k));
+      change[corner][k][lane] = static_cast<float>(displacements(n[to], k) - displacements(n[from], k));
     }
   };
   const bool face = pair.kind == PairKind::vertex_face;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "collision/contact/node_pair.hpp"
 
 namespace selvedge {
@@ -14,14 +12,13 @@ class PairMotion {
   // most the largest difference of displacements between a node of one primitive and one of the other, and on a
   // straight motion this is largest at an end.
   bool may_come_within(const NodePair&, double gap, double distance) const;
+  // From `at` to x1.
+  const Points& displacements() const { return to_; }
+  double rounding() const { return rounding_; }  // that displacements and distances may have, at most [m]
 
  private:
   Points from_, to_;  // displacements at both ends; from_ is empty where there are none
   double rounding_;   // [m]
 };
-
-// The gap [m] at x0 of a pair that may come within `distance` [m] on a motion that starts there; absent if it cannot.
-// The gap of the boxes round its primitives excludes most pairs whose boxes round the motion overlap.
-std::optional<double> gap_if_near(const PairMotion&, const NodePair&, const Points& x0, double distance);
 
 }  // namespace selvedge

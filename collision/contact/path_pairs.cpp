@@ -1,6 +1,7 @@
 #include "collision/contact/path_pairs.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "collision/contact/pair_motion.hpp"
@@ -8,70 +9,119 @@
 namespace selvedge {
 namespace {
 
-constexpr double slack_part = 0.5;        // of the thickness
-constexpr double few_beyond_slack = 0.3;  // of the cloth's vertices: if fewer stray, only their pairs are searched
+constexpr double slack_part = 0.5;      // of the thickness
+constexpr double few_are_astray = 0.3;  // of the cloth's vertices: if fewer are, only their pairs are searched for
 
 // Marks the list as valid for no motion until it is complete again, since a search may throw.
 void invalidate(PathPairs& path) { path.end.resize(0, 3); }
 
-// 1 for nodes that end farther than `slack` from path.end.
-std::vector<char> nodes_beyond_slack(const PathPairs& path, const Points& x1) {
-  std::vector<char> beyond_slack(static_cast<std::size_t>(x1.rows()));
-  for (Eigen::Index i = 0; i < x1.rows(); ++i)
-    beyond_slack[i] = !((x1.row(i) - path.end.row(i)).squaredNorm() <= path.slack * path.slack);
-  return beyond_slack;
+// Nodes that end too far from where they were for the list, of one kind of pairs.
+struct Astray {
+  std::vector<char> nodes;
+  std::ptrdiff_t count = 0;
+
+  void add(int node, const Points& x, const Points& end, double most) {
+    if ((x.row(node) - end.row(node)).squaredNorm() <= most * most) return;
+    nodes[node] = 1;
+    ++count;
+  }
+};
+
+Astray astray_from_cloth(const ContactWorld& world, const PathPairs& path, const Points& x) {
+  Astray astray{std::vector<char>(static_cast<std::size_t>(x.rows()))};
+  if (!world.self) return astray;
+  for (int v = 0; v < path.cloth_end.rows(); ++v) astray.add(v, x, path.cloth_end, path.slack);
+  return astray;
 }
 
-void leave_out_pairs_of(const std::vector<char>& nodes, PathPairs& path) {
+// Obstacles mostly end as they did. What they do not take of twice the slack is left to the cloth.
+Astray astray_from_obstacles(const ContactWorld& world, const PathPairs& path, const Points& x) {
+  Astray astray{std::vector<char>(static_cast<std::size_t>(x.rows()))};
+  if (world.obstacles.empty()) return astray;
+  const int cloth = static_cast<int>(path.cloth_end.rows()), nodes = static_cast<int>(x.rows());
+  double taken = 0;
+  for (int node = cloth; node < nodes; ++node) {
+    const double way = (x.row(node) - path.end.row(node)).norm();
+    taken = way <= path.slack ? std::max(taken, way) : path.slack;
+  }
+  for (int v = 0; v < cloth; ++v) astray.add(v, x, path.end, 2 * path.slack - taken);
+  for (int node = cloth; node < nodes; ++node) astray.add(node, x, path.end, path.slack);
+  return astray;
+}
+
+// Pairs of the cloth with itself, or else pairs with an obstacle.
+bool is_among(const NodePair& pair, Among among, int cloth_vertices) {
+  const bool of_cloth = std::ranges::all_of(pair.nodes, [&](int node) { return node < cloth_vertices; });
+  return of_cloth == (among == Among::cloth);
+}
+
+// Takes the pairs of one kind off the list: all, or those with an astray node.
+void leave_out(Among among, const std::vector<char>& astray, PathPairs& path) {
+  const int cloth = static_cast<int>(path.cloth_end.rows());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < path.pairs.size(); ++i) {
-    if (std::ranges::any_of(path.pairs[i].nodes, [&](int node) { return nodes[node] != 0; })) continue;
-    path.pairs[kept] = path.pairs[i];
+    const NodePair& pair = path.pairs[i];
+    if ((astray.empty() || std::ranges::any_of(pair.nodes, [&](int node) { return astray[node] != 0; })) &&
+        is_among(pair, among, cloth))
+      continue;
+    path.pairs[kept] = pair;
     path.gap[kept++] = path.gap[i];
   }
   path.pairs.resize(kept);
   path.gap.resize(kept);
 }
 
-void search_again(PairSearch& search, const std::vector<char>& beyond_slack, double reach, const Points& x1,
+// Lists the pairs of one kind for ends at x1: of the astray nodes if they are few, else of all. True if of all.
+bool search_again(PairSearch& search, Among among, const Astray& astray, double reach, const Points& x1,
                   PathPairs& path) {
-  leave_out_pairs_of(beyond_slack, path);
-  Points end = path.end;
-  for (Eigen::Index i = 0; i < x1.rows(); ++i)
-    if (beyond_slack[i]) end.row(i) = x1.row(i);
+  if (astray.count == 0) return false;
+  const bool few = static_cast<double>(astray.count) < few_are_astray * search.world().cloth->vertex_count;
+  leave_out(among, few ? astray.nodes : std::vector<char>{}, path);
+  Points end = x1;
+  if (few) {
+    end = path.end;
+    if (among == Among::cloth) end.topRows(path.cloth_end.rows()) = path.cloth_end;
+    for (Eigen::Index i = 0; i < x1.rows(); ++i)
+      if (astray.nodes[i]) end.row(i) = x1.row(i);
+  }
   std::vector<NodePair> found;
   std::vector<double> gap;
-  invalidate(path);
-  search.find_near(path.start, end, reach, found, gap, beyond_slack);
-  path.end = std::move(end);
+  search.find_near(path.start, end, reach, found, gap, few ? astray.nodes : path.marks, among);
+  if (among == Among::cloth)
+    path.cloth_end = end.topRows(path.cloth_end.rows());
+  else
+    path.end = std::move(end);
   path.pairs.insert(path.pairs.end(), found.begin(), found.end());
   path.gap.insert(path.gap.end(), gap.begin(), gap.end());
+  return !few;
 }
 
 }  // namespace
 
 bool update_pairs(PairSearch& search, double thickness, const Points& x0, const Points& x1, PathPairs& path) {
-  const auto near_end = [&](const Points& x) {
-    return (x - path.end).rowwise().squaredNorm().maxCoeff() <= path.slack * path.slack;
-  };
   const double reach = thickness + 2 * slack_part * thickness;
+  const ContactWorld& world = search.world();
   if (path.end.rows() == x1.rows()) {
+    const Astray of_cloth = astray_from_cloth(world, path, x1), of_obstacles = astray_from_obstacles(world, path, x1);
     if (path.start == x0) {
-      const std::vector<char> beyond_slack = nodes_beyond_slack(path, x1);
-      const auto count = std::ranges::count(beyond_slack, 1);
-      if (count == 0) return false;
-      if (static_cast<double>(count) < few_beyond_slack * search.world().cloth->vertex_count) {
-        search_again(search, beyond_slack, reach, x1, path);
-        return false;
+      try {
+        const bool all_of_cloth = search_again(search, Among::cloth, of_cloth, reach, x1, path);
+        const bool all_of_obstacles = search_again(search, Among::obstacles, of_obstacles, reach, x1, path);
+        return all_of_cloth || all_of_obstacles;
+      } catch (...) {
+        invalidate(path);
+        throw;
       }
-    } else if (near_end(x1) && near_end(x0)) {
-      return false;
     }
+    if (of_cloth.count + of_obstacles.count == 0 &&
+        astray_from_cloth(world, path, x0).count + astray_from_obstacles(world, path, x0).count == 0)
+      return false;
   }
   invalidate(path);
   search.find_near(x0, x1, reach, path.pairs, path.gap, path.marks);
   path.start = x0;
   path.end = x1;
+  path.cloth_end = x1.topRows(world.cloth->vertex_count);
   path.slack = slack_part * thickness;
   return true;
 }

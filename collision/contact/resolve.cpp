@@ -27,7 +27,8 @@ struct Separations {
 
 // Pairs that are looked at together for an impact.
 struct Suspects {
-  const Points &x0, &x1;
+  const Points &x0, &x1, &displacements;
+  double rounding;  // of these [m]
   const Separations& separation;
   const ContactWorld* normals_of;
   std::array<const NodePair*, PairLanes::width> pairs;
@@ -39,8 +40,8 @@ struct Suspects {
   }
   void look(std::vector<Impact>& found) {
     PairLanes lanes;
-    for (int i = 0; i < count; ++i) lanes.set(i, *pairs[i], x0, x1);
-    const unsigned apart = pair_kernels().apart_all_the_way(lanes, separation.most);
+    for (int i = 0; i < count; ++i) lanes.set(i, *pairs[i], x0, displacements);
+    const unsigned apart = pair_kernels().apart_all_the_way(lanes, separation.most + rounding);
     for (int i = 0; i < count; ++i) {
       if (apart >> i & 1) continue;
       const NodePair& pair = *pairs[i];
@@ -62,13 +63,14 @@ std::vector<Impact> impacts_of(const PathPairs& path, const Eigen::VectorXd& inv
                                const ContactWorld* normals_of, std::int64_t& swept) {
   constexpr int chunk = 4096;
   const PairMotion motion(path.start, x0, x1);
+  const Points displacements = x1 - x0;
   const int count = static_cast<int>(path.pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<Impact>> found(chunks);
   std::vector<std::int64_t> tested(chunks, 0);
   StopPoll stop;
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c) {
-    Suspects suspects{x0, x1, separation, normals_of, {}};
+    Suspects suspects{x0, x1, displacements, motion.rounding(), separation, normals_of, {}};
     for (int i = c * chunk, end = stop.wanted() ? 0 : std::min((c + 1) * chunk, count); i < end; ++i) {
       const NodePair& pair = path.pairs[i];
       const auto any = [&](auto&& test) { return std::any_of(pair.nodes.begin(), pair.nodes.end(), test); };

@@ -13,6 +13,7 @@ struct EightPairs {
   Points x0, x1;
   std::vector<NodePair> pairs;
   PairLanes lanes;
+  std::array<float, PairLanes::width> gaps;
 
   EightPairs(std::mt19937& random, double size, double moved, double from_origin) : x0(32, 3), x1(32, 3) {
     std::uniform_real_distribution<double> unit(-1, 1);
@@ -28,9 +29,13 @@ struct EightPairs {
         if (k == 3 && random() % 8 == 0) x0.row(4 * i + 3) = x0.row(4 * i + 1) + 1e-3 * x0.row(4 * i + 2);
         x1.row(4 * i + k) = x0.row(4 * i + k) + (drift + moved * any()).transpose();
       }
-      lanes.set(i, pairs.back(), x0, x1);
     }
+    const Points displacements = x1 - x0;
+    for (int i = 0; i < PairLanes::width; ++i) lanes.set(i, pairs[i], x0, displacements);
   }
+  bool stays_away(int i, double distance) { return pair_kernels().stays_away(lanes, distance, gaps.data()) >> i & 1; }
+  bool is_apart(int i, double distance) const { return pair_kernels().apart_all_the_way(lanes, distance) >> i & 1; }
+  double gap(int i) const { return std::sqrt(closest(pairs[i], x0).squared_distance); }
 };
 
 }  // namespace
@@ -38,26 +43,29 @@ struct EightPairs {
 TEST_CASE("pair lanes: a pair is left out only where the exact tests leave it out, and most of these are",
           "[pair_lanes]") {
   std::mt19937 random(8);
-  int away = 0, surely_away = 0, apart = 0, surely_apart = 0, met = 0;
+  int away = 0, surely_away = 0, apart = 0, surely_apart = 0, met = 0, close = 0, all = 0;
   for (int turn = 0; turn < 6000; ++turn) {
     const double size = std::pow(10.0, -static_cast<double>(turn % 4)), distance = 0.05 * size;
-    const EightPairs eight(random, size, (turn % 3) * 0.1 * size, turn % 5);
-    const unsigned stays = pair_kernels().stays_away(eight.lanes, distance);
-    const unsigned passes = pair_kernels().apart_all_the_way(eight.lanes, distance);
+    EightPairs eight(random, size, (turn % 3) * 0.1 * size, turn % 5);
     const PairMotion motion(eight.x0, eight.x0, eight.x1);
     for (int i = 0; i < PairLanes::width; ++i) {
       const NodePair& pair = eight.pairs[i];
-      const bool exact_away = !gap_if_near(motion, pair, eight.x0, distance);
+      const bool stays = eight.stays_away(i, distance), passes = eight.is_apart(i, distance);
+      const bool exact_away = !motion.may_come_within(pair, eight.gap(i), distance);
       const bool exact_apart = !time_of_contact(pair.kind, corners(pair, eight.x0), corners(pair, eight.x1), distance);
       away += exact_away;
-      surely_away += stays >> i & 1;
+      surely_away += stays;
       apart += exact_apart;
-      surely_apart += passes >> i & 1;
+      surely_apart += passes;
       met += !exact_apart;
-      if (stays >> i & 1) CHECK(exact_away);
-      if (passes >> i & 1) CHECK(exact_apart);
+      all += eight.gap(i) > distance;
+      close += eight.gap(i) > distance && eight.gaps[i] > 0.999 * eight.gap(i);
+      if (stays) CHECK(exact_away);
+      if (passes) CHECK(exact_apart);
+      if (!(eight.gaps[i] <= eight.gap(i))) FAIL_CHECK("a gap is too large");
     }
   }
+  CHECK(close > 0.99 * all);
   CHECK(met > 1000);
   CHECK(surely_away > 0.99 * away);
   CHECK(surely_apart > 0.9 * apart);
@@ -69,11 +77,9 @@ TEST_CASE("pair lanes: rounding proves no distance that a pair does not have", "
   for (int turn = 0; turn < 2000; ++turn) {
     EightPairs eight(random, 0.03, 0, turn % 5);
     for (int i = 0; i < PairLanes::width; ++i) {
-      const double gap = std::sqrt(closest(eight.pairs[i], eight.x0).squared_distance);
-      const unsigned stays = pair_kernels().stays_away(eight.lanes, (1 + 1e-9) * gap) >> i & 1;
-      const unsigned passes = pair_kernels().apart_all_the_way(eight.lanes, (1 + 1e-9) * gap) >> i & 1;
-      CHECK(stays + passes == 0);
-      proven += pair_kernels().stays_away(eight.lanes, (1 - 1e-4) * gap) >> i & 1;
+      const double gap = eight.gap(i);
+      CHECK_FALSE((eight.stays_away(i, (1 + 1e-9) * gap) || eight.is_apart(i, (1 + 1e-9) * gap)));
+      proven += eight.stays_away(i, (1 - 1e-4) * gap);
     }
   }
   CHECK(proven > 12000);
@@ -85,9 +91,10 @@ TEST_CASE("pair lanes: distances near the limit, undefined and huge coordinates 
   x << 0, 0, 0, -1, 1, -1, 1, 1, -1, 0, 1, 1;
   const NodePair pair{PairKind::vertex_face, {0, 1, 2, 3}};
   PairLanes lanes{};
+  std::array<float, PairLanes::width> gaps;
   const auto bits = [&](const Points& x1, double distance) {
-    lanes.set(0, pair, x, x1);
-    return std::pair(pair_kernels().stays_away(lanes, distance) & 1,
+    lanes.set(0, pair, x, x1 - x);
+    return std::pair(pair_kernels().stays_away(lanes, distance, gaps.data()) & 1,
                      pair_kernels().apart_all_the_way(lanes, distance) & 1);
   };
   CHECK(bits(x, 0.999) == std::pair(1U, 1U));
