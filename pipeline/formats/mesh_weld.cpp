@@ -97,9 +97,6 @@ Welding weld(Mesh& mesh, const std::string& name, std::optional<double> distance
     throw Error(fmt::format("is to be welded within {:g} of its units, and its edges are {:.3g} long on average",
                             *distance, edge),
                 name, "give a distance below half of that, or none: the default is a thousandth of it");
-  if (2 * coincident_triangles(mesh.x, mesh.triangles) == mesh.triangles.rows())
-    throw Error("cannot be welded: each of its triangles lies on another", name,
-                "delete one side of a two-sided mesh; give layers of cloth a gap");
   const Joining joining = joining_of(mesh.x, before, distance.value_or(distance_of(mesh.x, before)));
   join_at(joining.stands_for, mesh, name);
   const int crowded = surface_of(mesh.x, mesh.triangles).nonmanifold_edges;
