@@ -37,8 +37,7 @@ std::string unwelded_text(int joined, const std::string& cure);
 // unit; default: weld_distance). A vertex becomes the lowest of those that it is joined with, and vertices are numbered
 // anew in their order. Triangles that lose their area are removed and counted in a warning; vertices that have to stay
 // apart are counted in another. `name` is the mesh's. Sets Mesh::welded. Throws Error for a distance above half the
-// mean edge, where triangles at one place would make an edge of more than two triangles, and where each triangle lies
-// on another one.
+// mean edge, and where triangles at one place would make an edge of more than two triangles.
 Welding weld(Mesh&, const std::string& name, std::optional<double> distance = {});
 
 // Joins each vertex into the one that stands for it, the lowest of its set, as `weld` does, without looking at edges.
