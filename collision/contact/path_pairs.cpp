@@ -1,6 +1,7 @@
 #include "collision/contact/path_pairs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -35,15 +36,13 @@ Astray astray_from_cloth(const ContactWorld& world, const PathPairs& path, const
 }
 
 // Obstacles mostly end as they did. What they do not take of twice the slack is left to the cloth.
-Astray astray_from_obstacles(const ContactWorld& world, const PathPairs& path, const Points& x) {
+Astray astray_from_obstacles(const PathPairs& path, const Points& x) {
   Astray astray{std::vector<char>(static_cast<std::size_t>(x.rows()))};
-  if (world.obstacles.empty()) return astray;
-  const int cloth = static_cast<int>(path.cloth_end.rows()), nodes = static_cast<int>(x.rows());
-  double taken = 0;
-  for (int node = cloth; node < nodes; ++node) {
-    const double way = (x.row(node) - path.end.row(node)).norm();
-    taken = way <= path.slack ? std::max(taken, way) : path.slack;
-  }
+  const int cloth = static_cast<int>(path.cloth_end.rows()), nodes = static_cast<int>(x.rows()),
+            obstacles = nodes - cloth;
+  if (obstacles == 0) return astray;
+  const double farthest = (x.bottomRows(obstacles) - path.end.bottomRows(obstacles)).rowwise().squaredNorm().maxCoeff();
+  const double taken = farthest <= path.slack * path.slack ? std::sqrt(farthest) : path.slack;
   for (int v = 0; v < cloth; ++v) astray.add(v, x, path.end, 2 * path.slack - taken);
   for (int node = cloth; node < nodes; ++node) astray.add(node, x, path.end, path.slack);
   return astray;
@@ -102,7 +101,7 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
   const double reach = thickness + 2 * slack_part * thickness;
   const ContactWorld& world = search.world();
   if (path.end.rows() == x1.rows()) {
-    const Astray of_cloth = astray_from_cloth(world, path, x1), of_obstacles = astray_from_obstacles(world, path, x1);
+    const Astray of_cloth = astray_from_cloth(world, path, x1), of_obstacles = astray_from_obstacles(path, x1);
     if (path.start == x0) {
       try {
         const bool all_of_cloth = search_again(search, Among::cloth, of_cloth, reach, x1, path);
@@ -114,7 +113,7 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
       }
     }
     if (of_cloth.count + of_obstacles.count == 0 &&
-        astray_from_cloth(world, path, x0).count + astray_from_obstacles(world, path, x0).count == 0)
+        astray_from_cloth(world, path, x0).count + astray_from_obstacles(path, x0).count == 0)
       return false;
   }
   invalidate(path);
