@@ -213,8 +213,7 @@ void ConventionalStepper::stop_short(StepWork& work, const Points& wanted, Subst
 SubstepOutcome ConventionalStepper::respond(StepWork& work, Substep& s, const StepProblem& problem,
                                             const NewtonReport& newton, const Contacts& contacts, Points& x) {
   const int n = scene_.surface.vertex_count;
-  if (s.by_vertex) mark_near(s.start.history, contacts, s.contact);
-  s.solved = x;
+  if (s.by_vertex) s.solved = x;
   solve_.stick(s, problem, contacts, x, work.report);
   s.nodes.topRows(n) = x;
   ResolveOptions options = resolve_options(work);

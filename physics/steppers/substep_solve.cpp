@@ -24,7 +24,6 @@ SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& euler
       stage_(stage),
       options_(options),
       solver_(scene, euler),
-      parts_(scene),
       friction_(features_of(scene).friction),
       slip_speed_(euler.slip_speed),
       edge_length_(mean_edge_length(scene)),
@@ -59,10 +58,11 @@ std::vector<Impact> SubstepSolve::impacts(const Points& nodes0, const Points& no
   return found;
 }
 
-void SubstepSolve::choose_starts(Substep& s, const Contacts& contacts, StepProblem& problem) const {
-  s.contact.resize(parts_.part.size(), VertexContact::none);
+void SubstepSolve::choose_starts(Substep& s, const Contacts& contacts, StepProblem& problem) {
+  if (!parts_) parts_.emplace(scene_);
+  s.contact.resize(parts_->part.size(), VertexContact::none);
   mark_near(s.start.history, contacts, s.contact);
-  const auto rules = vertex_rules(parts_, s.start.history, s.h, contacts, s.contact);
+  const auto rules = vertex_rules(*parts_, s.start.history, s.h, contacts, s.contact);
   s.starts = starts_of(rules, s.start.history, *problem.x0, *problem.v0, s.h);
   problem.starts = &s.starts;
 }

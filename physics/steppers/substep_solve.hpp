@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "physics/scene/contact_forces.hpp"
@@ -48,7 +49,7 @@ class SubstepSolve {
   // x: first guess in, minimiser out.
   NewtonReport once(const StepProblem&, Points& x, StepReport&);
   // Chooses the rule of each vertex, as vertex_rules says, and lets the problem's inertia start where these have it.
-  void choose_starts(Substep&, const Contacts&, StepProblem&) const;
+  void choose_starts(Substep&, const Contacts&, StepProblem&);
   // The impacts of the straight motion.
   std::vector<Impact> impacts(const Points& nodes0, const Points& nodes1, StepReport&);
   // Begins at the carried guess, if the potential without contact is lower there than where the nodes are.
@@ -73,7 +74,7 @@ class SubstepSolve {
   ContactStage& stage_;
   SubstepOptions options_;
   ImplicitEuler solver_;
-  PinnedParts parts_;
+  std::optional<PinnedParts> parts_;  // made when first needed
   bool friction_;
   double slip_speed_, edge_length_, deep_;
   int most_newton_;
