@@ -24,9 +24,15 @@ class CellGrid {
   int cubes() const { return static_cast<int>(points_.begin.size()) - 1; }
   int first(int cube) const { return points_.begin[cube]; }
 
-  // Visits the cubes that the ball's box meets, in ascending order: the first and the last cube of each row.
+  // Visits the points of all cubes that the ball's box meets, the ball's own among them, in a fixed order.
   template <class Visit>
-  void for_each_row_near(const Vec3& at, double radius, Visit visit) const {
+  void for_each_near(const Vec3& at, double radius, Visit visit) const {
+    for_each_place_near(at, radius, [&](int p) { visit(points_.item[p]); });
+  }
+
+  // The same, but visits the points' places in `order`, ascending.
+  template <class Visit>
+  void for_each_place_near(const Vec3& at, double radius, Visit visit) const {
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
       from[k] = std::max(0, coordinate(at[k] - radius, k));
@@ -34,15 +40,8 @@ class CellGrid {
     }
     if (from[2] > to[2]) return;
     for (int i = from[0]; i <= to[0]; ++i)
-      for (int j = from[1]; j <= to[1]; ++j) visit(cell(i, j, from[2]), cell(i, j, to[2]));
-  }
-
-  // Visits the points of these cubes, the ball's own among them, in a fixed order.
-  template <class Visit>
-  void for_each_near(const Vec3& at, double radius, Visit visit) const {
-    for_each_row_near(at, radius, [&](int first_cube, int last_cube) {
-      for (int p = first(first_cube); p < first(last_cube + 1); ++p) visit(points_.item[p]);
-    });
+      for (int j = from[1]; j <= to[1]; ++j)
+        for (int p = first(cell(i, j, from[2])); p < first(cell(i, j, to[2]) + 1); ++p) visit(p);
   }
 
   // Visits the cubes within `rings` of a cube along each axis, with the cube itself, in ascending order: the first and

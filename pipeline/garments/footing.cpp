@@ -11,13 +11,6 @@ constexpr double beside = 0.01;                       // this near to the line o
 constexpr double cell = far / 2;                      // edge of the cubes in which other parts are looked for [m]
 constexpr double facing = -0.3;                       // largest cosine of its normal with the direction out
 
-// A lower bound of the cosines of a box's normals with `along`. A cosine rounds by less than the margin.
-double least_cosine(const NormalBox& box, const Vec3& along) {
-  double least = -1e-12;
-  for (int k = 0; k < 3; ++k) least += std::min(box.lo[k] * along[k], box.hi[k] * along[k]);
-  return least;
-}
-
 // For each foot the distance along the line out to x at which another part of the body begins [m]. A part beside the
 // line counts as farther by its distance from it. Infinite if no part is near enough to matter.
 std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, const Points& x) {
@@ -28,22 +21,12 @@ std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, co
     const double out = way.norm(), most = out / first_part;
     if (!(out > 0 && out < far)) continue;
     const Vec3 along = way / out;
-    const auto look_at = [&](int p) {
+    body.grid.for_each_place_near(from, most + beside, [&](int p) {
       const Vec3 to = row(body.x_in_order, p) - from;
       const double height = to.dot(along);
       if (!(height > 0 && height < std::min(gap[v], most)) || row(body.normals_in_order, p).dot(along) > facing) return;
       const double there = height + std::max(0.0, (to - height * along).norm() - beside);
       if (there < most) gap[v] = std::min(gap[v], there);
-    };
-    // Most blocks near a foot hold skin of its own part, which does not face it.
-    body.grid.for_each_row_near(from, most + beside, [&](int first_cube, int last_cube) {
-      const int end = body.grid.first(last_cube + 1);
-      for (int p = body.grid.first(first_cube), next; p < end; p = next) {
-        const int block = p / PosedSkin::in_a_block;
-        next = std::min(end, (block + 1) * PosedSkin::in_a_block);
-        if (least_cosine(body.normal_boxes[block], along) > facing) continue;
-        for (int q = p; q < next; ++q) look_at(q);
-      }
     });
   }
   return gap;
@@ -55,17 +38,7 @@ PosedSkin::PosedSkin(const Surface& body, const Points& posed)
     : x(posed),
       grid(posed, cell),
       x_in_order(posed(grid.order(), Eigen::all)),
-      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  const int places = static_cast<int>(posed.rows());
-  normal_boxes.resize((places + in_a_block - 1) / in_a_block, {{none, none, none}, {-none, -none, -none}});
-  for (int p = 0; p < places; ++p)
-    for (int k = 0; k < 3; ++k) {
-      NormalBox& box = normal_boxes[p / in_a_block];
-      box.lo[k] = std::min(box.lo[k], normals_in_order(p, k));
-      box.hi[k] = std::max(box.hi[k], normals_in_order(p, k));
-    }
-}
+      normals_in_order(vertex_normals(body, posed)(grid.order(), Eigen::all)) {}
 
 Footing footing_of(const Points& x, const PosedSkin& rest) {
   Footing footing;

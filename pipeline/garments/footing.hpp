@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "collision/geometry/cell_grid.hpp"
@@ -14,11 +13,6 @@ struct Footing {
   std::vector<double> part;  // share of the gap above the foot beyond which a vertex is squeezed
 };
 
-// The box round some normals.
-struct NormalBox {
-  std::array<double, 3> lo, hi;
-};
-
 // A body in a pose, with a grid for searches from garments.
 struct PosedSkin {
   PosedSkin(const Surface& body, const Points& posed);
@@ -26,8 +20,6 @@ struct PosedSkin {
   Points x;  // [m]
   CellGrid grid;
   Points x_in_order, normals_in_order;  // in the grid's order
-  static constexpr int in_a_block = 8;
-  std::vector<NormalBox> normal_boxes;  // of so many places after each other
 };
 
 // The footing of a surface x that is worn by the body at rest [m]. The parts of the body must be apart there.

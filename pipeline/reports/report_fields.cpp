@@ -156,10 +156,9 @@ BoundFields<StepReport> own_fields() {
             {{"max_unsolved", Over::largest}}),
       field("untangling", &R::untangling, "", "passes of untangling before the step",
             {{"untangling_passes", Over::sum}}),
-      field(
-          "out_of_newton", &R::out_of_newton, "",
-          "1 if [the budget](overview.md#budgets) of Newton iterations ran out; later solves are rough",
-          {{"out_of_newton_frames", Over::frames}}, Page::yes),
+      field("out_of_newton", &R::out_of_newton, "",
+            "1 if [the budget](overview.md#budgets) of Newton iterations ran out; later solves are rough",
+            {{"out_of_newton_frames", Over::frames}}, Page::yes),
       field("out_of_untangling", &R::out_of_untangling, "",
             "1 if the budget of untangling passes ran out; cloth that is still tangled waits for the next frame",
             {{"out_of_untangling_frames", Over::frames}}, Page::yes),
