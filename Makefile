@@ -62,7 +62,7 @@ everything: with-blender with-python test long check-install minimal wheel asan 
 # Blender and a display for it, so that tests and tutorials do not leave out what needs them.
 with-blender:
 	@cmake/install-packages.sh blender
-# Adds the Python packages that tests of exports, clusters and the stub need.
+# Adds the Python packages for tests of exports, of clusters and of the type stub.
 with-python:
 	@cmake/install-packages.sh $(PACKAGES_release)
 	@$(MAKE) --no-print-directory build/release/configured
