@@ -13,8 +13,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Column {
   const char* name;    // in files
   const char* title;   // in the table

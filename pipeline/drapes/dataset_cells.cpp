@@ -42,7 +42,7 @@ std::optional<CellResult> run_path(DatasetWork& work, std::size_t number, const 
   for (const Points& x : path->x)
     positions = hash_of({reinterpret_cast<const char*>(x.data()), sizeof(double) * static_cast<std::size_t>(x.size())},
                         positions);
-  const nlohmann::ordered_json row = {
+  const Json row = {
       {"path", number}, {"drapes", path->x.size()}, {"dropped", path->dropped}, {"seconds", path->seconds}};
   return CellResult{json_text(row), true, positions};
 }
@@ -180,10 +180,9 @@ std::string dataset_text(const DatasetSummary& s) {
 }
 
 std::string dataset_json(const DatasetSummary& s) {
-  const nlohmann::ordered_json json = {
-      {"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
-      {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
-      {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}};
+  const Json json = {{"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
+                     {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
+                     {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}};
   return json_text(json);
 }
 

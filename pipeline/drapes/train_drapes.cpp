@@ -132,7 +132,7 @@ std::string drape_train_text(const DrapeTrainSummary& s) {
 }
 
 std::string drape_train_json(const DrapeTrainSummary& s) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  Json rows = Json::array();
   for (const DrapeTableRow& row : s.table)
     rows.push_back({{"row", row.name},
                     {"mpve_mm", row.vertex_error.mean},

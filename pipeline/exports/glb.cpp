@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/exports/export_formats.hpp"
@@ -11,7 +10,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Level = Eigen::Matrix<int, 1, 3>;
 using Levels = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
@@ -320,7 +318,7 @@ std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& given, con
   all["accessors"] = chunk.accessors;
   const Json buffer = {{"byteLength", chunk.bytes.size()}};
   all["buffers"] = Json::array({buffer});
-  write_chunks(path, all.dump(-1, ' ', false, Json::error_handler_t::replace), chunk.bytes);
+  write_chunks(path, json_line(all), chunk.bytes);
   return {path};
 }
 

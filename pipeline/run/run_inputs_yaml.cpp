@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 
@@ -47,9 +47,9 @@ std::vector<fs::path> numbered_files(const fs::path& name) {
 std::vector<fs::path> gltf_buffers(const fs::path& file) {
   std::vector<fs::path> buffers;
   std::ifstream in(file);
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  const Json json = parse_json_or_discard({std::istreambuf_iterator<char>(in), {}});
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return buffers;
-  for (const nlohmann::json& buffer : json["buffers"])
+  for (const Json& buffer : json["buffers"])
     if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string())
       if (const std::string uri = buffer["uri"]; !uri.starts_with("data:")) buffers.push_back(file.parent_path() / uri);
   return buffers;

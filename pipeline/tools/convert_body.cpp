@@ -98,17 +98,17 @@ BodyReport convert_body(const BodyRequest& request) {
 }
 
 std::string body_json(const BodyReport& r) {
-  nlohmann::ordered_json own = nlohmann::ordered_json::array();
+  Json own = Json::array();
   for (const OwnCrossings::Between& one : r.crossings.between)
     own.push_back({{"mesh", one.a}, {"with", one.b}, {"pairs", one.pairs}});
-  const nlohmann::ordered_json json = {{"body", r.out.string()},     {"vertices", r.vertices},
-                                       {"triangles", r.triangles},   {"closed", r.closed},
-                                       {"joints", r.joints},         {"shapes", r.shapes},
-                                       {"height", r.height},         {"arms_off", r.arms_off},
-                                       {"t_pose", r.t_pose},         {"lacks", r.lacks},
-                                       {"animations", r.animations}, {"meshes", r.meshes},
-                                       {"own_pairs", own},           {"own_pairs_counted", !r.crossings.too_many},
-                                       {"warnings", r.warnings}};
+  const Json json = {{"body", r.out.string()},     {"vertices", r.vertices},
+                     {"triangles", r.triangles},   {"closed", r.closed},
+                     {"joints", r.joints},         {"shapes", r.shapes},
+                     {"height", r.height},         {"arms_off", r.arms_off},
+                     {"t_pose", r.t_pose},         {"lacks", r.lacks},
+                     {"animations", r.animations}, {"meshes", r.meshes},
+                     {"own_pairs", own},           {"own_pairs_counted", !r.crossings.too_many},
+                     {"warnings", r.warnings}};
   return json_text(json);
 }
 

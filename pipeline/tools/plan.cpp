@@ -137,7 +137,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
 }  // namespace
 
 std::string plan_json(const Setup& setup) {
-  nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+  Json lines = Json::array();
   for (const PlanLine& line : lines_of(setup))
     lines.push_back({{"feature", line.feature}, {"in", line.in}, {"why", line.why}});
   return json_text({{"scene", setup.file.string()},

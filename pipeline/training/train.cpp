@@ -336,21 +336,21 @@ std::string train_text(const TrainSummary& s) {
 
 std::string train_json(const TrainSummary& s) {
   const RollMeasure& r = s.last.roll;
-  const nlohmann::ordered_json json = {{"folder", s.folder.string()},
-                                       {"finished", s.finished},
-                                       {"steps", s.counts.step},
-                                       {"frames", s.counts.frames},
-                                       {"bad_samples", s.counts.bad},
-                                       {"lost_rolls", s.counts.lost},
-                                       {"seconds", s.seconds},
-                                       {"best_step", s.best_step},
-                                       {"best_score", s.best_score},
-                                       {"score_unit", s.score_unit},
-                                       {"worn_closed", s.last.skinned.closed},
-                                       {"minimised_closed", s.last.minimised.closed},
-                                       {"strain", r.strain},
-                                       {"strain_99", r.strain_99},
-                                       {"pairs_at_end", r.pairs_at_end}};
+  const Json json = {{"folder", s.folder.string()},
+                     {"finished", s.finished},
+                     {"steps", s.counts.step},
+                     {"frames", s.counts.frames},
+                     {"bad_samples", s.counts.bad},
+                     {"lost_rolls", s.counts.lost},
+                     {"seconds", s.seconds},
+                     {"best_step", s.best_step},
+                     {"best_score", s.best_score},
+                     {"score_unit", s.score_unit},
+                     {"worn_closed", s.last.skinned.closed},
+                     {"minimised_closed", s.last.minimised.closed},
+                     {"strain", r.strain},
+                     {"strain_99", r.strain_99},
+                     {"pairs_at_end", r.pairs_at_end}};
   return json_text(json);
 }
 
