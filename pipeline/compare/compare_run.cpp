@@ -10,7 +10,7 @@
 #include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/frame/frame_audits.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/reports/report_fields.hpp"

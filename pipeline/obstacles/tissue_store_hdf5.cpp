@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/bounded_folder.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"

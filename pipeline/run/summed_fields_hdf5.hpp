@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 namespace selvedge::h5 {
 

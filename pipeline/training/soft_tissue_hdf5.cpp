@@ -4,7 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/bodies/mannequin.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/bounded_folder.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "collision/untangle/give_way.hpp"
-#include "pipeline/formats/trajectory.hpp"
 #include "pipeline/garments/garment.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 #include "pipeline/motions/clip.hpp"
 #include "pipeline/training/training_options.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/hdf5/trajectory_row.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/view/packed_positions.hpp"
 

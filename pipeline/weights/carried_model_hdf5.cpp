@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/kept_rows.hpp"
 
 namespace selvedge {

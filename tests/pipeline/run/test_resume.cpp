@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/checkpoint.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 #include "pipeline/run/memory_forms.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"

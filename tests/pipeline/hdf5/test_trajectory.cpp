@@ -8,9 +8,9 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_row.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/source_root.hpp"
 
