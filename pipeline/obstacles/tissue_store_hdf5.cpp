@@ -14,8 +14,7 @@
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_in_store = std::size_t{25} << 20;        // coordinates
-constexpr std::uintmax_t most_in_folder = std::uintmax_t{1} << 30;  // bytes of all stores
+constexpr std::size_t most_in_store = std::size_t{25} << 20;  // coordinates
 
 const h5::FileForm tissue_form{"selvedge tissue 1", "soft tissue", "docs/bodies.md"};
 
@@ -45,9 +44,10 @@ void read_poses(const h5::Fields& file, TissueStore& store) {
 
 }  // namespace
 
-TissueStore read_tissue_store(const std::filesystem::path& folder, std::uint64_t performance) {
+TissueStore read_tissue_store(const std::filesystem::path& cache, std::uint64_t performance) {
   TissueStore store;
-  store.file = folder / fmt::format("{:016x}.h5", performance);
+  if (cache.empty()) return store;
+  store.file = cache / "tissue" / fmt::format("{:016x}.h5", performance);
   std::error_code ignored;
   if (!std::filesystem::exists(store.file, ignored)) return store;
   try {
@@ -82,8 +82,8 @@ void keep_tissue(const Points& skinned, const Points& given, TissueStore& store)
   store.poses[key_of(skinned)] = std::move(pose);
 }
 
-void write_tissue_store(TissueStore& store) {
-  if (!std::exchange(store.grown, false)) return;
+void write_tissue_store(TissueStore& store, std::uintmax_t most) {
+  if (store.file.empty() || !std::exchange(store.grown, false)) return;
   std::vector<int> keys, counts, vertices;
   Points x(static_cast<Eigen::Index>(store.numbers / 3), 3);
   Eigen::Index at = 0;
@@ -103,7 +103,7 @@ void write_tissue_store(TissueStore& store) {
       h5::write_points(file, "positions", x);
     });
   });
-  keep_within(store.file.parent_path(), most_in_folder);
+  keep_within(store.file.parent_path(), most);
 }
 
 }  // namespace selvedge

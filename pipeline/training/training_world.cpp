@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "learned/steppers/learned_state.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
@@ -117,13 +115,6 @@ void check_garments_take(const Config& section, const TrainingWorld& world, cons
                      "make the garment anew for this body with `selvedge dress`, or give a shorter `shape`");
 }
 
-// A hash of the inputs of soft tissue beside shape, layers and poses. 0: the mannequin with the usual room.
-std::uint64_t tissue_key(const Config& section, const TrainingPerson& person) {
-  const std::vector<double>& room = section["room"].numbers;
-  if (person.body.name.starts_with("mannequin") && room.empty()) return 0;
-  return hash_of(fmt::format("{}", fmt::join(room, " ")), person.hash);
-}
-
 // The person's body of this shape: one from `first` on, or a new one.
 TrainingBody& body_of(const SampleOptions& options, const Config& section, const Eigen::VectorXd& shape,
                       std::size_t first, Performance& who, TrainingWorld& world) {
@@ -136,11 +127,11 @@ TrainingBody& body_of(const SampleOptions& options, const Config& section, const
   body.joints = joint_positions(person.body, shape);
   body.person = static_cast<int>(world.people.size()) - 1;
   body.weight = 0;
-  body.tissue_key = tissue_key(section, person);
   if (options.soft_tissue) {
     perform(section, options.folder, who);
     wear(layer_count(world, person), who);
     body.soft_tissue = who.soft_tissue;
+    body.room = who.known->room;
   }
   person.bodies.push_back(static_cast<int>(world.bodies.size()));
   return world.bodies.emplace_back(std::move(body));
