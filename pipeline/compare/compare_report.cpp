@@ -6,7 +6,7 @@
 #include <set>
 
 #include "pipeline/compare/compare.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 

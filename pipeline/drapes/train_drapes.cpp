@@ -6,7 +6,7 @@
 
 #include "collision/geometry/floating_point.hpp"
 #include "pipeline/drapes/drape_run.hpp"
-#include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/hdf5/neighbour_scale_hdf5.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"

@@ -16,7 +16,6 @@
 #include "pipeline/processes/learning_sums.hpp"
 #include "pipeline/processes/together.hpp"
 #include "pipeline/run/progress.hpp"
-#include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "pipeline/training/training_tables.hpp"
 
@@ -83,9 +82,8 @@ void write_tables(const TrainingRun& run) {
 
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
-  const TrainingWorld& world = run.trainer->maker->world;
   if (run.leads()) {
-    run.trainer->queue->locked([&] { write_soft_tissue(world.soft_tissue_folder, world); });
+    run.trainer->queue->locked([&] { write_soft_tissue(run.trainer->maker->world); });
     write_weights(run, "weights.h5");
     write_tables(run);
   }
