@@ -28,7 +28,7 @@ const std::vector<Heavy> heavy_packages = {
     {"nlohmann-json", "nlohmann/.*", "pipeline/.*(\\.cpp|_json\\.hpp)"},
     {"fmt", "fmt/.*", "pipeline/.*"},
     {"tinygltf", "tiny_gltf\\.h", ".*_tinygltf\\.cpp"},
-    {"libzip", "zip\\.h", "pipeline/formats/npz\\.cpp"},
+    {"libzip", "zip\\.h", "pipeline/formats/zip_archive\\.cpp"},
     {"Catch2", "catch2/.*", "tests/.*"},
 };
 
