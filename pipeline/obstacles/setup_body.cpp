@@ -19,6 +19,7 @@
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/motions/clip_amass.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
@@ -267,11 +268,7 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
 std::uint64_t hash_of_performance(const Surface& surface, const SkinnedSurface& skin, const Eigen::VectorXd& shape,
                                   const Clip& clip, double room) {
   std::uint64_t hash = hash_of(fmt::format("{} {:a} {} {:a}", GiveWay::recipe, room, clip.name, clip.fps));
-  const auto take = [&](const auto& matrix) {
-    hash = hash_of({reinterpret_cast<const char*>(matrix.data()),
-                    sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size())},
-                   hash);
-  };
+  const auto take = [&](const auto& numbers) { hash = hash_of(bytes_of(numbers), hash); };
   take(surface.triangles);
   take(shaped(skin, shape));
   for (const BodyPose& pose : clip.poses) take(pose.rotations);

@@ -8,6 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/bounded_folder.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 
@@ -17,11 +18,6 @@ namespace {
 constexpr std::size_t most_in_store = std::size_t{25} << 20;  // coordinates
 
 const h5::FileForm tissue_form{"selvedge tissue 1", "soft tissue", "docs/bodies.md"};
-
-std::uint64_t key_of(const Points& skinned) {
-  return hash_of(
-      {reinterpret_cast<const char*>(skinned.data()), sizeof(double) * static_cast<std::size_t>(skinned.size())});
-}
 
 // All poses on end: the halves of their keys, how many vertices move in each, which, and where they are.
 void read_poses(const h5::Fields& file, TissueStore& store) {
@@ -60,7 +56,7 @@ TissueStore read_tissue_store(const std::filesystem::path& cache, std::uint64_t 
 }
 
 std::optional<Points> known_tissue(const TissueStore& store, const Points& skinned) {
-  const auto found = store.poses.find(key_of(skinned));
+  const auto found = store.poses.find(hash_of(bytes_of(skinned)));
   if (found == store.poses.end()) return {};
   const TissueStore::Pose& pose = found->second;
   const auto is_vertex = [&](int v) { return v >= 0 && v < skinned.rows(); };
@@ -79,7 +75,7 @@ void keep_tissue(const Points& skinned, const Points& given, TissueStore& store)
   if (store.numbers + count > most_in_store) return;
   store.numbers += count;
   store.grown = true;
-  store.poses[key_of(skinned)] = std::move(pose);
+  store.poses[hash_of(bytes_of(skinned))] = std::move(pose);
 }
 
 void write_tissue_store(TissueStore& store, std::uintmax_t most) {

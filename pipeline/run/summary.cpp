@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "collision/geometry/counted.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -116,9 +117,7 @@ void put_totals(const RunSummary& s, nlohmann::ordered_json& json) {
 
 void add_frame(RunSummary& summary, int index, const Frame& frame) {
   const StepReport& report = frame.report;
-  const std::string_view positions(reinterpret_cast<const char*>(frame.x.data()),
-                                   sizeof(float) * static_cast<std::size_t>(frame.x.size()));
-  summary.positions_hash = hash_of(positions, index > 0 ? summary.positions_hash : hash_of(""));
+  summary.positions_hash = hash_of(bytes_of(frame.x), index > 0 ? summary.positions_hash : hash_of(""));
   if (index > 0) {
     if (report.status == StepStatus::accepted) ++summary.frames;
     summary.frame_seconds.push_back(frame.seconds);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double least_move = 1e-7;  // of a vertex that soft tissue moves [m]
 
-std::size_t bytes_of(const TissueStore& store) {
+std::size_t memory_of(const TissueStore& store) {
   return store.numbers * sizeof(double) + store.numbers / 3 * sizeof(int) +
          store.poses.size() * sizeof(TissueStore::Pose);
 }
@@ -29,14 +29,14 @@ Points tissue_moves(TrainingWorld& world, const TrainingBody& body, TrainingClip
     const TrainingPerson& person = world.people[static_cast<std::size_t>(body.person)];
     clip.tissue = read_tissue_store(
         world.cache, hash_of_performance(person.surface, person.body.skin, body.shape, clip.motion, body.room));
-    world.tissue_bytes += bytes_of(*clip.tissue);
+    world.tissue_bytes += memory_of(*clip.tissue);
   }
   std::optional<Points> given = known_tissue(*clip.tissue, skinned);
   if (!given) {
     given = (*body.soft_tissue)(skinned);
-    world.tissue_bytes -= bytes_of(*clip.tissue);
+    world.tissue_bytes -= memory_of(*clip.tissue);
     keep_tissue(skinned, *given, *clip.tissue);
-    world.tissue_bytes += bytes_of(*clip.tissue);
+    world.tissue_bytes += memory_of(*clip.tissue);
   }
   const Points exact = *given - skinned;
   Points moves = exact.cast<float>().cast<double>();

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "learned/steppers/learned_state.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
@@ -164,16 +166,13 @@ void add_shape(const SampleOptions& options, std::uint64_t seed, int index, cons
 
 std::uint64_t hash_of_body(const BodyModel& body) {
   std::uint64_t hash = hash_of(body.name);
-  const auto add = [&](const void* data, std::size_t bytes) {
-    hash = hash_of({static_cast<const char*>(data), bytes}, hash);
-  };
-  const SkinnedSurface& skin = body.skin;
-  add(skin.rest.data(), sizeof(double) * static_cast<std::size_t>(skin.rest.size()));
-  add(skin.triangles.data(), sizeof(int) * static_cast<std::size_t>(skin.triangles.size()));
-  add(skin.shape_directions.data(), sizeof(double) * static_cast<std::size_t>(skin.shape_directions.size()));
-  add(skin.pose_directions.data(), sizeof(double) * static_cast<std::size_t>(skin.pose_directions.size()));
-  for (const SkinWeights* matrix : {&skin.weights, &body.regressor})
-    add(matrix->valuePtr(), sizeof(double) * static_cast<std::size_t>(matrix->nonZeros()));
+  const auto add = [&](const auto& numbers) { hash = hash_of(bytes_of(numbers), hash); };
+  add(body.skin.rest);
+  add(body.skin.triangles);
+  add(body.skin.shape_directions);
+  add(body.skin.pose_directions);
+  for (const SkinWeights* matrix : {&body.skin.weights, &body.regressor})
+    add(std::span(matrix->valuePtr(), static_cast<std::size_t>(matrix->nonZeros())));
   return hash;
 }
 
