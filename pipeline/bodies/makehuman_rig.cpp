@@ -87,7 +87,8 @@ std::vector<RigBone> read_rig_bones(const std::filesystem::path& path) {
   const Json json = parsed(path);
   const Value file{path.string(), "", &json}, bones = file.at("bones"), joints = file.at("joints");
   std::map<std::string, int> index;
-  for (const auto& [name, ignored] : bones.object().items()) index.emplace(name, static_cast<int>(index.size()));
+  for (const auto& [name, ignored] : bones.object().items()) index.emplace(name, 0);
+  for (int next = 0; auto& [name, number] : index) number = next++;
   std::vector<RigBone> found;
   for (const auto& [name, ignored] : index) {
     const Value bone = bones.at(name), parent = bone.at("parent");
@@ -117,6 +118,7 @@ std::vector<RigWeight> read_rig_weights(const std::filesystem::path& path, const
       found.push_back({static_cast<int>(bone - bones.begin()), entry.at(std::size_t{0}).vertex(), weight});
     }
   }
+  std::ranges::stable_sort(found, {}, &RigWeight::bone);
   return found;
 }
 
