@@ -24,6 +24,21 @@ void check_triangles(int vertex_count, const Triangles& triangles, const std::st
   }
 }
 
+// What has no mass would hold the cloth that it is joined to.
+void check_masses(const Scene& scene) {
+  const Eigen::VectorXd masses = lumped_masses(scene);
+  std::vector<char> pinned(static_cast<std::size_t>(masses.size()), 0);
+  for (const int pin : scene.pins) pinned[static_cast<std::size_t>(pin)] = 1;
+  for (const Cloth& cloth : scene.cloths)
+    for (const auto& triangle :
+         scene.surface.triangles.middleRows(cloth.first_triangle, cloth.triangle_count).rowwise())
+      for (const int v : triangle)
+        if (!(masses[v] > 0) && !pinned[static_cast<std::size_t>(v)])
+          throw Error(
+              "vertex " + std::to_string(v - cloth.first_vertex) + " has no mass: no triangle at it has an area",
+              "cloth `" + cloth.name + "`", "leave these triangles out, or pin the vertex");
+}
+
 std::string named(const std::string& name, const char* kind, std::size_t number) {
   return name.empty() ? kind + std::to_string(number) : name;
 }
@@ -93,6 +108,7 @@ State first_state(const Scene& scene, const Points& x, const std::vector<Points>
     require(obstacles[k].rows() == scene.obstacles[k].surface.vertex_count,
             "the obstacle " + scene.obstacles[k].name + " has another number of vertices", "first state", "");
   check_scene(scene);
+  check_masses(scene);
   State state;
   state.x = x;
   state.v = Points::Zero(x.rows(), 3);

@@ -35,6 +35,8 @@ int add_cloth(Scene&, const Points& rest, const Triangles&, const Material& = {}
 int add_obstacle(Scene&, int vertex_count, const Triangles&, bool moving = false, const std::string& name = {});
 
 // The state at time 0, at rest. x: positions of all cloths, one after the other [m]; then those of every obstacle [m].
+// Throws Error for other numbers of them, and for a vertex without mass in a triangle that is no pin: it would hold the
+// cloth.
 State first_state(const Scene&, const Points& x, const std::vector<Points>& obstacles = {});
 
 // A drive that keeps pins and obstacles where they are in the state, under gravity.

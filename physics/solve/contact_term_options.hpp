@@ -10,6 +10,9 @@ struct ContactTermOptions {
 
   // The force rises smoothly over this part of the thickness.
   static constexpr double onset = 0.02;
+  // A shorter step [s] removes the smaller part of an overlap: a fixed part would throw cloth up the faster, the
+  // shorter steps are.
+  static constexpr double full_step = 1e-3;
   // A load may press a term in by this part of the thickness.
   static constexpr double load_sink = 0.01;
   // A stopped impact may sink by this part of the gap at which it is stopped.

@@ -54,15 +54,16 @@ bool linearise(const ContactMotion& motion, const NodePair& pair, const Eigen::V
 
 Contacts contact_terms(const ContactMotion& motion, std::span<const Proximity> proximities) {
   const ContactTermOptions& options = motion.options;
+  const double share = std::min(1.0, motion.h / ContactTermOptions::full_step);  // of what a step removes or admits
   Contacts contacts;
   for (const Proximity& p : proximities) {
-    const double lift = options.overlap_removed * (p.rest_gap - p.gap);
+    const double lift = share * options.overlap_removed * (p.rest_gap - p.gap);
     ContactTerm term;
     term.normal = p.normal;
     term.target = std::min(p.rest_gap, p.gap + lift);
     term.softness = options.onset * p.rest_gap;
     // Loaded cloth comes to rest where sinking and lifting balance: at half the rest gap.
-    term.sink = std::max(options.overlap_removed * p.gap, options.load_sink * p.rest_gap);
+    term.sink = share * std::max(options.overlap_removed * p.gap, options.load_sink * p.rest_gap);
     if (!linearise(motion, p.pair, p.weights, term)) continue;
     contacts.pairs.push_back(p.pair);
     contacts.terms.push_back(term);

@@ -32,7 +32,8 @@ struct ContactMotion {
 // The proximities of a step as terms of its incremental potential. A pair's stiffness begins with a multiple of its
 // mass over h^2. So a layer sinks under its own weight by the same small fraction of g h^2 at any density, scale or
 // time step. The force vanishes once a tenth of the overlap is gone, so that no pair is thrown apart (Bridson, Fedkiw
-// and Anderson 2002, section 7.2). Pairs farther apart than their rest gap are stopped there.
+// and Anderson 2002, section 7.2); in steps below a millisecond even less, in proportion. Pairs farther apart than
+// their rest gap are stopped there.
 Contacts contact_terms(const ContactMotion&, std::span<const Proximity>);
 
 // Adds impacts that a solve has run into as terms of the next solve, so that the whole cloth gives way and not the four

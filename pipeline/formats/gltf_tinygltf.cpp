@@ -292,13 +292,29 @@ void add_weights(const Document& file, const tinygltf::Primitive& primitive, con
     if (!(sum[v] > 0)) file.fail(part, "has no weights at vertex " + std::to_string(v), "weight every vertex");
 }
 
-void add_primitive(const Document& file, const tinygltf::Primitive& primitive, const std::string& part, int joints,
-                   std::vector<Eigen::Triplet<double>>& weights, Mesh& mesh) {
-  if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1)
-    file.fail(part, "is not made of triangles", "export triangles");
+// The positions with the morph targets that the file itself turns on.
+Numbers positions_of(const Document& file, const tinygltf::Primitive& primitive, const std::vector<double>& morphs,
+                     const std::string& part) {
   const auto position = primitive.attributes.find("POSITION");
   if (position == primitive.attributes.end()) file.fail(part, "has no positions", "export it anew");
-  const Numbers x = file.numbers(position->second, 3, part + ", POSITION");
+  Numbers x = file.numbers(position->second, 3, part + ", POSITION");
+  for (std::size_t t = 0; t < std::min(morphs.size(), primitive.targets.size()); ++t) {
+    const auto moved = primitive.targets[t].find("POSITION");
+    if (morphs[t] == 0 || moved == primitive.targets[t].end()) continue;
+    const std::string target = part + ", target " + std::to_string(t);
+    const Numbers by = file.numbers(moved->second, 3, target);
+    if (by.rows() != x.rows()) file.fail(target, "has not as many rows as there are vertices", "export it anew");
+    x += morphs[t] * by;
+  }
+  if (!x.allFinite()) file.fail(part, "is not finite with the weights of its morph targets", "export it anew");
+  return x;
+}
+
+void add_primitive(const Document& file, const tinygltf::Primitive& primitive, const std::vector<double>& morphs,
+                   const std::string& part, int joints, std::vector<Eigen::Triplet<double>>& weights, Mesh& mesh) {
+  if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1)
+    file.fail(part, "is not made of triangles", "export triangles");
+  const Numbers x = positions_of(file, primitive, morphs, part);
   const int first = static_cast<int>(mesh.x.rows()), count = static_cast<int>(x.rows());
   mesh.x.conservativeResize(first + count, 3);
   mesh.x.bottomRows(count) = x;
@@ -317,6 +333,11 @@ void add_primitive(const Document& file, const tinygltf::Primitive& primitive, c
   add_weights(file, primitive, part, first, count, joints, weights);
 }
 
+// The weights of a mesh's morph targets where it is used; empty: all are 0.
+const std::vector<double>& morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
+  return node.weights.empty() ? mesh.weights : node.weights;
+}
+
 // Adds the chosen meshes that a skin deforms, each as a group with its name. Returns the names of all that it deforms.
 std::vector<std::string> add_meshes(const Document& file, int skin, const NameChoice& choice, GltfScene& scene,
                                     std::vector<Eigen::Triplet<double>>& weights) {
@@ -329,35 +350,48 @@ std::vector<std::string> add_meshes(const Document& file, int skin, const NameCh
     if (!choice.takes(name)) continue;
     const auto first = static_cast<int>(scene.mesh.x.rows());
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
-      add_primitive(file, mesh.primitives[p], fmt::format("mesh `{}`, primitive {}", name, p),
-                    static_cast<int>(scene.joints.size()), weights, scene.mesh);
+      add_primitive(file, mesh.primitives[p], morph_weights(node, mesh),
+                    fmt::format("mesh `{}`, primitive {}", name, p), static_cast<int>(scene.joints.size()), weights,
+                    scene.mesh);
     std::vector<int>& group = group_named(scene.mesh.groups, name);
     for (int v = first; v < static_cast<int>(scene.mesh.x.rows()); ++v) group.push_back(v);
   }
   return names;
 }
 
-// Joins vertices at one place, with the weights of the lowest.
+// Of each vertex the lowest one at its place whose weights are nearly the same. Parts of a body that touch have other
+// weights there and move apart; seams of textures have the same, but for rounding.
+std::vector<int> alike_places(const Points& x, const Eigen::SparseMatrix<double, Eigen::RowMajor>& weights) {
+  constexpr double most = 0.1;  // sum of the differences of two rows, each of which sums to 1
+  std::vector<int> places = same_places(x);
+  part_places(
+      [&](int v, int w) {
+        if (v == w) return true;
+        const Eigen::RowVectorXd one = weights.row(v), other = weights.row(w);
+        return (one - other).lpNorm<1>() <= most;
+      },
+      places);
+  return places;
+}
+
+// Joins vertices at one place that move alike, with the weights of the lowest.
 void join_vertices(const Document& file, const std::string& name, GltfScene& scene,
                    const std::vector<Eigen::Triplet<double>>& weights) {
-  const Eigen::Index as_read = scene.mesh.x.rows();
+  using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
-  join_at(same_places(scene.mesh.x), scene.mesh, name);
-  const std::vector<int>& welded = scene.mesh.welded;
-  std::vector<int> lowest(static_cast<std::size_t>(scene.mesh.x.rows()), -1);
+  Weights as_read(scene.mesh.x.rows(), static_cast<Eigen::Index>(scene.joints.size()));
+  as_read.setFromTriplets(weights.begin(), weights.end());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_read.rows());
+  for (const Eigen::Triplet<double>& w : weights) sum[w.row()] += w.value();
+  for (Eigen::Index v = 0; v < as_read.rows(); ++v) as_read.row(v) /= sum[v];
+  const std::vector<int> places = alike_places(scene.mesh.x, as_read);
+  join_at(places, scene.mesh, name);
   std::vector<Eigen::Triplet<double>> kept;
-  std::vector<double> sum(lowest.size(), 0.0);
-  for (int v = 0; v < as_read; ++v)
-    if (int& low = lowest[welded[v]]; low < 0) low = v;
-  for (const Eigen::Triplet<double>& w : weights) {
-    const int to = welded[w.row()];
-    if (lowest[to] != w.row()) continue;
-    kept.emplace_back(to, w.col(), w.value());
-    sum[to] += w.value();
-  }
-  scene.weights.resize(scene.mesh.x.rows(), static_cast<Eigen::Index>(scene.joints.size()));
+  for (int v = 0; v < as_read.rows(); ++v)
+    for (Weights::InnerIterator w(as_read, v); places[v] == v && w; ++w)
+      kept.emplace_back(scene.mesh.welded[v], w.col(), w.value());
+  scene.weights.resize(scene.mesh.x.rows(), as_read.cols());
   scene.weights.setFromTriplets(kept.begin(), kept.end());
-  for (Eigen::Index v = 0; v < scene.weights.rows(); ++v) scene.weights.row(v) /= sum[v];
 }
 
 std::optional<GltfPath> path_of(const std::string& name) {
@@ -367,15 +401,34 @@ std::optional<GltfPath> path_of(const std::string& name) {
   return {};  // weights of morph targets, and properties of extensions
 }
 
+// Whether a channel gives a mesh's morph targets other weights than the file does.
+bool morphs_otherwise(const Document& file, const tinygltf::AnimationChannel& channel, int output,
+                      const std::string& part) {
+  const tinygltf::Node& node = file.entry(file.model.nodes, channel.target_node, part);
+  if (node.mesh < 0 || node.skin < 0) return false;
+  const std::vector<double>& still = morph_weights(node, file.entry(file.model.meshes, node.mesh, part));
+  const Numbers values = file.numbers(output, 1, part + ", values");
+  for (Eigen::Index k = 0; k < values.rows(); ++k) {
+    const double weight = still.empty() ? 0 : still[static_cast<std::size_t>(k) % still.size()];
+    if (std::abs(values(k, 0) - weight) > 1e-6) return true;
+  }
+  return false;
+}
+
 GltfAnimation animation_of(const Document& file, const std::vector<int>& place, std::size_t number) {
   const tinygltf::Animation& given = file.model.animations[number];
-  GltfAnimation animation{name_or(given.name, "animation", number), {}};
+  GltfAnimation animation{name_or(given.name, "animation", number), {}, false};
   for (std::size_t c = 0; c < given.channels.size(); ++c) {
     const tinygltf::AnimationChannel& channel = given.channels[c];
     const std::optional<GltfPath> path = path_of(channel.target_path);
-    if (!path || channel.target_node < 0) continue;
+    const bool morphs = channel.target_path == "weights";
+    if ((!path && !morphs) || channel.target_node < 0) continue;
     const std::string part = "animation `" + animation.name + "`, channel " + std::to_string(c);
     const tinygltf::AnimationSampler& sampler = file.entry(given.samplers, channel.sampler, part);
+    if (morphs) {
+      animation.morphs = animation.morphs || morphs_otherwise(file, channel, sampler.output, part);
+      continue;
+    }
     GltfTrack track{file.entry(place, channel.target_node, part), *path, GltfInterpolation::linear, {}, {}};
     if (sampler.interpolation == "STEP") track.interpolation = GltfInterpolation::step;
     if (sampler.interpolation == "CUBICSPLINE") track.interpolation = GltfInterpolation::cubic;

@@ -37,6 +37,7 @@ struct GltfTrack {
 struct GltfAnimation {
   std::string name;  // animation0 where the file has none
   std::vector<GltfTrack> tracks;
+  bool morphs = false;  // it moves morph targets too, which no track has
 };
 
 // One skin of a glTF file and the meshes that it deforms.
@@ -50,7 +51,8 @@ struct GltfScene {
 };
 
 // Reads a rigged mesh, glTF 2.0 (.glb, or .gltf with the files that it names beside it). Vertices that differ only in
-// texture or normal are joined, so that closed surfaces stay closed. Of other files only buffers are opened, only below
+// texture or normal are joined, so that closed surfaces stay closed. Morph targets count with the weights that the file
+// gives them. Of other files only buffers are opened, only below
 // the file's own folder, and never images. Throws Error, naming the file and the part of it, for no skin or several
 // that are used, no triangles, compressed or sparse data, numbers outside of their buffers or not finite, weights that
 // are all zero, and a choice of meshes that the file lacks or that leaves none.

@@ -58,8 +58,8 @@ double frame_rate(const Npz& npz) {
   // SMPL+H files spell it without the second stroke.
   const std::string field = npz.has("mocap_framerate") ? "mocap_framerate" : "mocap_frame_rate";
   const NpyArray<double> rate = npz.numbers(field);
-  if (rate.values.size() != 1 || !(rate.values[0] > 0) || !std::isfinite(rate.values[0]))
-    fail(npz, field, "is no frame rate", "one number above 0, frames a second");
+  if (rate.values.size() != 1 || !(rate.values[0] > 0) || !(rate.values[0] <= 1e6))
+    fail(npz, field, "is no frame rate", "one number above 0, up to 1e6 frames a second");
   return rate.values[0];
 }
 

@@ -46,6 +46,15 @@ struct Reader {
       fail(token.line, fmt::format("`{}` is no finite number, {} should come", token.text, of), "repair the file");
     return *value;
   }
+  // An offset or a number of the motion. A rig of any unit is smaller than this.
+  double bounded(const std::string& of) {
+    constexpr double most = 1e9;
+    const int at = line();
+    const double value = number(of);
+    if (std::abs(value) > most)
+      fail(at, fmt::format("{} is {:g}", of, value), fmt::format("up to {:g} is allowed", most));
+    return value;
+  }
   int count(const std::string& of, int most) {
     const int at = line();
     const double value = number(of);
@@ -88,7 +97,7 @@ BvhChannel channel(const Reader& r, const Token& token) {
 Vec3 read_offset(Reader& r) {
   r.expect("OFFSET");
   Vec3 offset;
-  for (int k = 0; k < 3; ++k) offset[k] = r.number("a coordinate of an offset");
+  for (int k = 0; k < 3; ++k) offset[k] = r.bounded("a coordinate of an offset");
   return offset;
 }
 
@@ -148,7 +157,8 @@ void read_motion(Reader& r, BvhFile& bvh) {
   r.expect("Time:");
   const int time_line = r.line();
   const double seconds = r.number("the time of a frame");
-  if (!(seconds > 0)) r.fail(time_line, fmt::format("the time of a frame is {}", seconds), "give seconds, above 0");
+  if (!(seconds >= 1e-6))
+    r.fail(time_line, fmt::format("the time of a frame is {:g}", seconds), "give seconds, from 1e-6");
   bvh.fps = 1 / seconds;
   if (std::abs(bvh.fps / std::round(bvh.fps) - 1) < 2e-4) bvh.fps = std::round(bvh.fps);  // 0.041667 is 24
   const std::size_t left = r.tokens.size() - r.next,
@@ -161,7 +171,7 @@ void read_motion(Reader& r, BvhFile& bvh) {
            "get the whole file");
   bvh.motion.resize(frames, columns);
   for (int f = 0; f < frames; ++f)
-    for (int c = 0; c < columns; ++c) bvh.motion(f, c) = r.number("a number of the motion");
+    for (int c = 0; c < columns; ++c) bvh.motion(f, c) = r.bounded("a number of the motion");
 }
 
 }  // namespace

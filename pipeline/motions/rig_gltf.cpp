@@ -232,6 +232,10 @@ double gltf_rate(const GltfRig& rig, const std::string& name, std::vector<std::s
   constexpr int least = 60, most = 240;
   const GltfAnimation& animation = animation_named(rig, name);
   const std::string noun = rig.file + ": animation `" + animation.name + "`";
+  if (animation.morphs)
+    warnings.push_back(noun +
+                       " changes the weights of morph targets (shape keys), which are left out: the body keeps "
+                       "the shape that the file gives it");
   double begin = animation.tracks.empty() ? 0 : std::numeric_limits<double>::infinity();
   for (const GltfTrack& track : animation.tracks) begin = std::min(begin, track.times[0]);
   warn_of_begin(noun, "first_frame: " + fmt::format("{:.0f}", std::ceil(begin * least)) + " leaves that out",

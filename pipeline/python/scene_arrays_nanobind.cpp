@@ -16,6 +16,7 @@
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/scene_nanobind.hpp"
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/massless.hpp"
 #include "pipeline/scene/materials.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/scene/setup_garment.hpp"
@@ -111,22 +112,38 @@ Clip clip_of_arrays(const BodyModel& body, const nb::object& poses, const nb::ob
 }
 
 // Triangles that have a vertex twice are an error of their own, later.
-void warn_of_faults(const std::string& where, const Points& x, const Triangles& triangles) {
+bool has_vertex_twice(const Triangles& triangles) {
   const auto a = triangles.col(0), b = triangles.col(1), c = triangles.col(2);
-  if ((a.array() == b.array() || b.array() == c.array() || c.array() == a.array()).any()) return;
+  return (a.array() == b.array() || b.array() == c.array() || c.array() == a.array()).any();
+}
+
+void warn_of_faults(const std::string& where, const Points& x, const Triangles& triangles) {
+  if (has_vertex_twice(triangles)) return;
   std::vector<std::string> warnings;
   for (const std::string& fault : mesh_faults(x, triangles)) warnings.push_back(where + ": " + fault);
   warn(warnings);
 }
 
+// As scene files do, so that a vertex without mass does not hold the cloth.
+void leave_out_slivers(const std::string& where, ClothPart& part) {
+  if (has_vertex_twice(part.mesh.triangles)) return;
+  part.rest_triangle = flattened(part.rest, part.mesh.triangles);
+  std::vector<std::string> warnings;
+  leave_out_massless(part, warnings);
+  if (part.mesh.triangles.rows() == 0)
+    throw Error("has no triangle with an area", where + ", triangles", "give positions that lie apart");
+  warn(warnings);
+}
+
 }  // namespace
 
-// Appends the cloth to the scene, with its pins.
+// Appends the cloth to the scene, with its pins and what follows others.
 void SceneObject::add_part(ClothPart part) {
   Scene& scene = setup_.scene;
   const int number = add_cloth(scene, part.rest, part.mesh.triangles, part.material, part.name, part.rest_triangle);
   std::vector<int> pinned;
   for (const PinPart& pin : part.pins) pinned.insert(pinned.end(), pin.vertices.begin(), pin.vertices.end());
+  for (const Follower& one : part.followers) pinned.push_back(one.vertex);
   std::ranges::sort(pinned);
   pinned.erase(std::unique(pinned.begin(), pinned.end()), pinned.end());
   for (const int v : pinned) scene.pins.push_back(scene.cloths[static_cast<std::size_t>(number)].first_vertex + v);
@@ -146,6 +163,7 @@ int SceneObject::add_cloth_arrays(const nb::handle& x, const nb::handle& triangl
   part.mesh.triangles = triangles_of(triangles, part.rest.rows(), where + ", triangles");
   if (part.mesh.triangles.rows() == 0) throw Error("has no rows", where + ", triangles", "give three vertices a row");
   warn_of_faults(where, part.rest, part.mesh.triangles);
+  leave_out_slivers(where, part);
   if (!material.is_none()) {
     if (density || youngs_modulus || poisson || bending)
       throw Error("is given beside numbers of it", where + ", material", "put the numbers into `material`");

@@ -22,6 +22,7 @@
 #include "pipeline/run/run_folder.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
+#include "pipeline/scene/massless.hpp"
 #include "pipeline/scene/setup_start.hpp"
 
 namespace selvedge {
@@ -247,8 +248,11 @@ void SceneObject::begin() {
   setup_.velocity = state_.v;
   if (frames > 0) state_.v.setZero();
   setup_.initial = state_;
+  setup_.followers = followers_of(cloths_, setup_.scene);
   if (frames > 0) state_ = prepared(setup_);
-  stepper_ = decorated(setup_.scene, make_, {.cut = std::ranges::any_of(cloths_, &ClothPart::cut)});
+  stepper_ =
+      make_following_stepper(setup_.scene, setup_.followers,
+                             decorated(setup_.scene, make_, {.cut = std::ranges::any_of(cloths_, &ClothPart::cut)}));
 }
 
 Drive SceneObject::drive_of_arrays(double time) const {

@@ -134,4 +134,18 @@ void leave_out_massless(ClothPart& part, std::vector<std::string>& warnings) {
   warnings.push_back(warning);
 }
 
+std::vector<Follower> followers_of(const std::vector<ClothPart>& parts, const Scene& scene) {
+  std::vector<Follower> all;
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    for (Follower one : parts[c].followers) {
+      const bool pinned = std::ranges::any_of(
+          parts[c].pins, [&](const PinPart& pin) { return std::ranges::binary_search(pin.vertices, one.vertex); });
+      if (pinned) continue;
+      one.vertex += scene.cloths[c].first_vertex;
+      for (int& v : one.of) v += scene.cloths[c].first_vertex;
+      all.push_back(one);
+    }
+  return all;
+}
+
 }  // namespace selvedge

@@ -15,4 +15,7 @@ namespace selvedge {
 // on the cloth beside it and would meet it for ever. Counted in a warning.
 void leave_out_massless(ClothPart&, std::vector<std::string>& warnings);
 
+// The followers of all cloths by the scene's numbers, but for vertices that a cloth's own pins hold.
+std::vector<Follower> followers_of(const std::vector<ClothPart>&, const Scene&);
+
 }  // namespace selvedge

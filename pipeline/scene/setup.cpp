@@ -14,6 +14,7 @@
 #include "pipeline/obstacles/setup_obstacle.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
+#include "pipeline/scene/massless.hpp"
 #include "pipeline/scene/quality.hpp"
 #include "pipeline/scene/setup_cloth.hpp"
 #include "pipeline/scene/setup_outcome.hpp"
@@ -236,21 +237,6 @@ struct JoinedScene {
   std::vector<Follower> followers;
   std::vector<std::string> warnings;
 };
-
-// Those of all cloths, by the scene's numbers, but what the scene file itself pins.
-std::vector<Follower> followers_of(const std::vector<ClothPart>& parts, const Scene& scene) {
-  std::vector<Follower> all;
-  for (std::size_t c = 0; c < parts.size(); ++c)
-    for (Follower one : parts[c].followers) {
-      const bool pinned = std::ranges::any_of(
-          parts[c].pins, [&](const PinPart& pin) { return std::ranges::binary_search(pin.vertices, one.vertex); });
-      if (pinned) continue;
-      one.vertex += scene.cloths[c].first_vertex;
-      for (int& v : one.of) v += scene.cloths[c].first_vertex;
-      all.push_back(one);
-    }
-  return all;
-}
 
 JoinedScene join_scene(const Config& config, const SceneParts& parts, double begin_time) {
   JoinedScene joined;

@@ -308,3 +308,20 @@ def test_absurdly_many_threads_are_taken_back_with_a_warning():
         [sys.executable, "-W", "error", "-c", code], env=environment, capture_output=True, text=True
     )
     assert refused.returncode == 1 and "RuntimeWarning" in refused.stderr
+
+
+def test_a_sliver_does_not_hold_a_sheet_in_the_air():
+    x, triangles = sheet(6, 0.5, 0.3)
+    plain, sliver = selvedge.Scene(), selvedge.Scene()
+    plain.add_cloth(x, triangles)
+    more = np.vstack([x, (x[0] + x[1]) / 2, [0, 0.9, 0]])  # on the rim; in no triangle
+    with pytest.warns(UserWarning, match="1 triangle of zero rest area is left out"):
+        sliver.add_cloth(more, np.vstack([triangles, [0, 1, len(x)]]), name="sheet")
+    for _ in range(5):
+        assert plain.step() and sliver.step()
+    assert np.array_equal(sliver.x[: len(x)], plain.x)
+    assert np.allclose(sliver.x[len(x)], (plain.x[0] + plain.x[1]) / 2)  # it follows
+    assert sliver.x[len(x) + 1, 1] == 0.9
+    for shape in ([0, 0, 0], [1, 0, 0]):
+        with pytest.raises(selvedge.Error, match="has no triangle with an area"):
+            selvedge.Scene().add_cloth(x * shape, triangles)

@@ -46,6 +46,19 @@ TEST_CASE("make_scene: a first state and a world at rest fit the scene", "[make_
   CHECK_THROWS_AS(first_state(scene, a.x, {a.x}), Error);
 }
 
+TEST_CASE("make_scene: a vertex without mass is refused, since it would hold the cloth", "[make_scene]") {
+  testing::Sheet a = testing::sheet(1, 0.1, 0);
+  a.x.conservativeResize(5, 3);
+  a.x.row(4) = 0.5 * (a.x.row(0) + a.x.row(1));
+  a.triangles.conservativeResize(a.triangles.rows() + 1, 3);
+  a.triangles.bottomRows(1) << 0, 1, 4;
+  Scene scene;
+  add_cloth(scene, a.x, a.triangles, {}, "sheet");
+  CHECK_THROWS_WITH(first_state(scene, a.x), Contains("cloth `sheet`") && Contains("vertex 4 has no mass"));
+  scene.pins = {4};
+  CHECK_NOTHROW(first_state(scene, a.x));
+}
+
 TEST_CASE("make_scene: arrays that do not fit are refused, and the scene stays as it is", "[make_scene]") {
   const testing::Sheet a = testing::sheet(1, 0.1, 0);
   Scene scene;

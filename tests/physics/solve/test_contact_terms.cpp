@@ -43,6 +43,15 @@ TEST_CASE("contact terms: gap and target of a vertex over an obstacle", "[contac
   CHECK(contact_force(terms[0], 0.9e-3).first < 0);
 }
 
+TEST_CASE("contact terms: short steps part what overlaps no faster than longer ones", "[contact_terms]") {
+  const VertexOnFloor c;
+  const auto speed = [&](double h) { return (c.terms(1e-3, 2e-3, h)[0].target - 1e-3) / h; };
+  CHECK(speed(1e-3) == Approx(0.1));  // of the overlap in a millisecond
+  CHECK(speed(1e-4) == Approx(0.1));
+  CHECK(speed(1e-6) == Approx(0.1));
+  CHECK(c.terms(1e-3, 2e-3, 1e-4)[0].sink == Approx(1e-5));  // a load sinks as much as is lifted at half the gap
+}
+
 TEST_CASE("contact terms: a moving obstacle carries the gap and the slip with it", "[contact_terms]") {
   const VertexOnFloor c;
   const Proximity p{{PairKind::vertex_face, {0, 1, 2, 3}}, {1, -0.375, -0.25, -0.375}, Vec3::UnitY(), 1e-3, 2e-3};

@@ -132,6 +132,9 @@ TEST_CASE("clip_bvh: errors name file and line", "[clip]") {
   fails(broken("Frames: 2", "Frames: 3"), "17", "18 numbers");
   fails(broken("Frames: 2", "Frames: 0"), "15", "no frames");
   fails(broken("0.0416667", "0"), "15", "time of a frame");
+  fails(broken("0.0416667", "1e-310"), "15", "time of a frame is 1e-310");
+  fails(broken("OFFSET 0 10 0", "OFFSET 0 1e308 0"), "7", "1e+308");
+  fails(broken("30 10 20", "30 1e308 20"), "17", "1e+308");
   // A hundred million frames of nothing are as many poses.
   fails("HIERARCHY ROOT a { OFFSET 0 0 0 CHANNELS 0 }\nMOTION Frames: 100000000 Frame Time: 1\n", "2", "no channels");
   fails(broken("30 10 20", "30 x 20"), "17", "`x`");

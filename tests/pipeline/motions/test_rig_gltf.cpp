@@ -165,6 +165,64 @@ TEST_CASE("glTF: an animation is taken at a rate that meets its keys, and a late
   CHECK_THAT(warnings.back(), Contains("no steady rate"));
 }
 
+TEST_CASE("glTF: parts of a body that touch are joined only where they move alike", "[rig_gltf]") {
+  const Folder folder("gltf_touching");
+  // The second half repeats the first one's vertices and triangles, turned over.
+  BodyModel body = fake::body(4, 12, 0, false);
+  const Eigen::Index n = body.skin.rest.rows(), m = body.skin.triangles.rows();
+  body.skin.rest = Points(body.skin.rest.replicate(2, 1));
+  body.regressor.conservativeResize(body.regressor.rows(), 2 * n);
+  body.skin.triangles = Triangles(body.skin.triangles.replicate(2, 1));
+  body.skin.triangles.bottomRows(m) = (body.skin.triangles.topRows(m).rowwise().reverse().array() + n).matrix();
+  std::vector<Eigen::Triplet<double>> weights;
+  for (int v = 0; v < 2 * n; ++v) weights.emplace_back(v, v < n ? 1 : 2, 1.0);
+  const auto joined = [&] {
+    body.skin.weights = SkinWeights(2 * n, 4);
+    body.skin.weights.setFromTriplets(weights.begin(), weights.end());
+    const auto path = fake::write(folder, "rig.glb", fake::gltf_of(body, {}, body.joints).glb());
+    return read_gltf(path).mesh;
+  };
+  CHECK(joined().x.rows() == 2 * n);
+  CHECK(joined().triangles.rows() == 2 * m);
+  for (int v = 0; v < 2 * n; ++v) weights[v] = {v, 1, 1.0};
+  CHECK(joined().x.rows() == n);
+}
+
+TEST_CASE("glTF: morph targets count as the file has them, and their animation is said to be left out", "[rig_gltf]") {
+  const Folder folder("gltf_morphs");
+  const BodyModel body = fake::body(6, 40, 0, false);
+  fake::GltfFile file = fake::gltf_of(body, some_motion(6, 5), body.joints);
+  auto& primitive = file.json["meshes"][0]["primitives"][0];
+  const Points still = read_gltf(fake::write(folder, "still.glb", file.glb())).mesh.x;
+  const int count = file.json["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()]["count"];
+  const int target = file.numbers(Eigen::RowVector3d(0, 0, 8).replicate(count, 1), "VEC3");
+  primitive["targets"] = {{{"POSITION", target}}, {{"POSITION", target}}};
+  const auto rig = [&] { return read_gltf_rig(fake::write(folder, "morph.glb", file.glb())); };
+  CHECK(rig().scene.mesh.x == still);
+  file.json["meshes"][0]["weights"] = {0.25, 0.5};
+  CHECK((rig().scene.mesh.x.rowwise() - Eigen::RowVector3d(0, 0, 6) - still).isZero(1e-5));
+  auto& node = *std::ranges::find_if(file.json["nodes"], [](const auto& one) { return one.contains("mesh"); });
+  node["weights"] = {1, 0};
+  CHECK((rig().scene.mesh.x.rowwise() - Eigen::RowVector3d(0, 0, 8) - still).isZero(1e-5));
+
+  const auto animated = [&](double last) {
+    fake::GltfFile moved = file;
+    auto& animation = moved.json["animations"][0];
+    const int values = moved.numbers((Eigen::VectorXd(4) << 1, 0, last, 0).finished(), "SCALAR");
+    const int times = moved.numbers(Eigen::Vector2d(0, 0.1), "SCALAR");
+    const auto number = std::distance(file.json["nodes"].begin(), std::ranges::find(file.json["nodes"], node));
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size()}, {"target", {{"node", number}, {"path", "weights"}}}});
+    animation["samplers"].push_back({{"input", times}, {"output", values}});
+    std::vector<std::string> warnings;
+    gltf_rate(read_gltf_rig(fake::write(folder, "moved.glb", moved.glb())), "", warnings);
+    return warnings;
+  };
+  CHECK(animated(1).empty());
+  REQUIRE(animated(0.5).size() == 1);
+  CHECK_THAT(animated(0.5)[0], Contains("morph targets"));
+}
+
 TEST_CASE("glTF: a person's joints get SMPL's names, and scenes play the file's animation", "[rig_gltf]") {
   const Folder folder("gltf_person");
   const BodyModel whole = make_mannequin();
