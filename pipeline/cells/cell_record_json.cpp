@@ -6,10 +6,7 @@
 #include "pipeline/host/kept_row_json.hpp"
 
 namespace selvedge {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 std::string cell_record_json(const CellRecord& record) {
   Json json = {{"cell", record.cell}, {"kind", record.kind},       {"program", record.program},
