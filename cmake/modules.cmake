@@ -1,7 +1,8 @@
 # How a module is compiled: the files of a room together, a precompiled header, OpenMP only where there is a pragma,
 # position-independent everywhere, so that the Python extension is linked to the libraries of any build.
 
-set(SELVEDGE_COMMON_HEADERS <algorithm> <array> <cassert> <cmath> <functional> <map> <optional> <set> <span> <string>
+set(SELVEDGE_COMMON_HEADERS <algorithm> <array> <cassert> <chrono> <cmath> <fstream> <functional> <iomanip> <map>
+  <memory> <mutex> <numeric> <optional> <set> <span> <sstream> <string> <thread>
   <vector> <Eigen/Core> <Eigen/Geometry>)
 
 # Functions of a file that call each other are inlined as elsewhere: nothing replaces them when a program is loaded.

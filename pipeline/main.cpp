@@ -11,7 +11,7 @@
 #include "collision/geometry/path_beside.hpp"
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/formats/hdf5_at_exit.hpp"
+#include "pipeline/hdf5/hdf5_at_exit.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/library_message.hpp"
 #include "pipeline/host/process_threads.hpp"

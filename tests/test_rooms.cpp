@@ -53,6 +53,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"plots", {"host"}},
       {"reports", {"host"}},
       {"formats"},
+      {"hdf5"},
       {"exports"},
       {"shapes"},
       {"bodies"},
@@ -64,7 +65,7 @@ const std::map<std::string, std::vector<Room>> rooms = {
       {"scene"},
       {"run"},
       {"measures"},
-      {"view", {"host", "reports", "formats"}},
+      {"view", {"host", "reports", "hdf5"}},
       {"cells"},
       {"tools"},
       {"processes"},
@@ -212,7 +213,9 @@ TEST_CASE("rooms: some include less than all to their left, and some are include
   CHECK(complaints("collision/audit/a.cpp", "collision/search/b.hpp") == 1);
   CHECK(complaints("collision/untangle/a.cpp", "collision/audit/b.hpp") == 1);
   CHECK(complaints("physics/steppers/a.cpp", "collision/audit/b.hpp") == 0);
-  CHECK(complaints("pipeline/view/a.cpp", "pipeline/formats/b.hpp") == 0);
+  CHECK(complaints("pipeline/view/a.cpp", "pipeline/hdf5/b.hpp") == 0);
+  CHECK(complaints("pipeline/view/a.cpp", "pipeline/formats/b.hpp") == 1);
+  CHECK(complaints("pipeline/formats/a.cpp", "pipeline/hdf5/b.hpp") == 1);
   CHECK(complaints("pipeline/view/a.cpp", "pipeline/scene/b.hpp") == 1);
   CHECK(complaints("learned/torch/a_torch.cpp", "learned/network/b.hpp") == 0);
   CHECK(complaints("learned/torch/a_torch.cpp", "learned/steppers/b.hpp") == 1);

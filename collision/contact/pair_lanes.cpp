@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/geometry/eight_lanes.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -15,30 +17,14 @@ constexpr double widened = 1 + 4e-6, narrowed = 1 - 4e-6;  // for lengths
 constexpr float least_direction = 1e-20F;  // squared [m2, or m4 for a normal]
 constexpr float most_reach = 1e9F;         // up to which they do not overflow [m]
 
-using Eight [[gnu::vector_size(32), gnu::aligned(32)]] = float;
-using EightBits [[gnu::vector_size(32), gnu::aligned(32)]] = int;
-struct EightVec3 {
-  Eight x, y, z;
-};
 struct EightPolygon {
   EightVec3 corner[corner_count];
 };
 
-[[gnu::always_inline]] inline Eight smaller(const Eight& a, const Eight& b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline Eight larger(const Eight& a, const Eight& b) { return a > b ? a : b; }
 [[gnu::always_inline]] inline Eight size(const Eight& a) { return a < 0 ? -a : a; }
 [[gnu::always_inline]] inline Eight sum_of_sizes(const EightVec3& a) { return size(a.x) + size(a.y) + size(a.z); }
 [[gnu::always_inline]] inline EightVec3 plus(const EightVec3& a, const Eight& s, const EightVec3& b) {
   return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
-[[gnu::always_inline]] inline EightVec3 minus(const EightVec3& a, const EightVec3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-[[gnu::always_inline]] inline Eight dot(const EightVec3& a, const EightVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-[[gnu::always_inline]] inline EightVec3 cross(const EightVec3& a, const EightVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 [[gnu::always_inline]] inline EightVec3 choose(const EightBits& first, const EightVec3& a, const EightVec3& b) {
   return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
@@ -131,11 +117,6 @@ struct EightPolygon {
 
 float widened_distance(double distance) { return static_cast<float>(widened * distance); }
 
-unsigned bits_plain(const EightBits& flags) {
-  unsigned bits = 0;
-  for (int i = 0; i < PairLanes::width; ++i) bits |= static_cast<unsigned>(flags[i] & (1 << i));
-  return bits;
-}
 unsigned stays_away_plain(const PairLanes& pairs, double distance, float* gaps) {
   Eight found;
   EightBits bits;
@@ -156,14 +137,16 @@ constexpr PairKernels plain_kernels{stays_away_plain, apart_plain};
   EightBits bits;
   stays_away(pairs, widened_distance(distance), found, bits);
   __builtin_memcpy(gaps, &found, sizeof found);
-  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(bits)));
+  return bits_avx2(bits);
 }
 [[gnu::target("avx2")]] unsigned apart_avx2(const PairLanes& pairs, double distance) {
   EightBits bits;
   apart_all_the_way(pairs, widened_distance(distance), bits);
-  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(bits)));
+  return bits_avx2(bits);
 }
 constexpr PairKernels avx2_kernels{stays_away_avx2, apart_avx2};
+#else
+constexpr PairKernels avx2_kernels = plain_kernels;
 #endif
 
 }  // namespace
@@ -183,13 +166,6 @@ void PairLanes::set(int lane, const NodePair& pair, const Points& x0, const Poin
   put(3, face ? 0 : 1, face ? 3 : 2);
 }
 
-const PairKernels& pair_kernels() {
-#if defined(__x86_64__)
-  static const bool avx2 = __builtin_cpu_supports("avx2");
-  return avx2 ? avx2_kernels : plain_kernels;
-#else
-  return plain_kernels;
-#endif
-}
+const PairKernels& pair_kernels() { return has_avx2() ? avx2_kernels : plain_kernels; }
 
 }  // namespace selvedge

@@ -1,39 +1,13 @@
 #include "collision/distance/wide_kernels.hpp"
 
+#include "collision/geometry/eight_lanes.hpp"
+
 namespace selvedge {
 namespace {
-
-using Eight [[gnu::vector_size(32)]] = float;
-using EightBits [[gnu::vector_size(32)]] = int;
-struct EightVec3 {
-  Eight x, y, z;
-};
 
 [[gnu::always_inline]] inline Eight load_eight(const float* from) {
   Eight result;
   __builtin_memcpy(&result, from, sizeof result);
-  return result;
-}
-
-[[gnu::always_inline]] inline Eight smaller(Eight a, Eight b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline Eight larger(Eight a, Eight b) { return a > b ? a : b; }
-
-[[gnu::always_inline]] inline EightVec3 minus(const EightVec3& a, const EightVec3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-[[gnu::always_inline]] inline Eight dot(const EightVec3& a, const EightVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-[[gnu::always_inline]] inline EightVec3 cross(const EightVec3& a, const EightVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-// One bit for each lane below the limit.
-[[gnu::always_inline]] inline unsigned flags_below(Eight value, float limit) {
-  constexpr EightBits place{1, 2, 4, 8, 16, 32, 64, 128};
-  const EightBits flags = (value < limit) & place;
-  unsigned result = 0;
-  for (int i = 0; i < 8; ++i) result |= static_cast<unsigned>(flags[i]);
   return result;
 }
 
@@ -80,42 +54,38 @@ unsigned boxes_plain(const WideTree::Node& node, const float* at, float limit, f
   Eight found;
   test_boxes(node, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
-  return flags_below(found, limit);
+  return bits_plain(found < limit);
 }
 unsigned triangles_plain(const WideTree::Leaf& leaf, const float* at, float limit, float* squared) {
   Eight found;
   test_triangles(leaf, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
-  return flags_below(found, limit);
+  return bits_plain(found < limit);
 }
+
+constexpr WideKernels plain_kernels{boxes_plain, triangles_plain};
 
 #if defined(__x86_64__)
 [[gnu::target("avx2")]] unsigned boxes_avx2(const WideTree::Node& node, const float* at, float limit, float* squared) {
   Eight found;
   test_boxes(node, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
-  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
+  return bits_avx2(found < limit);
 }
 [[gnu::target("avx2")]] unsigned triangles_avx2(const WideTree::Leaf& leaf, const float* at, float limit,
                                                 float* squared) {
   Eight found;
   test_triangles(leaf, at, found);
   __builtin_memcpy(squared, &found, sizeof found);
-  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Eight>(found < limit)));
+  return bits_avx2(found < limit);
 }
 constexpr WideKernels avx2_kernels{boxes_avx2, triangles_avx2};
+#else
+constexpr WideKernels avx2_kernels = plain_kernels;
 #endif
 
-constexpr WideKernels plain_kernels{boxes_plain, triangles_plain};
 }  // namespace
 
-const WideKernels& wide_kernels() {
-#if defined(__x86_64__)
-  static const bool avx2 = __builtin_cpu_supports("avx2");
-  return avx2 ? avx2_kernels : plain_kernels;
-#else
-  return plain_kernels;
-#endif
-}
+const WideKernels& wide_kernels() { return has_avx2() ? avx2_kernels : plain_kernels; }
 
 }  // namespace selvedge

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
 
 namespace selvedge {
@@ -13,7 +14,7 @@ namespace {
 constexpr std::size_t many = 1000;  // more vertices at one place than the seams of a mesh have
 
 // The largest distance of vertices at one place [m].
-double same_place(const Points& x) { return 1e-6 * (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
+double same_place(const Points& x) { return 1e-6 * box_diagonal(x); }
 
 }  // namespace
 

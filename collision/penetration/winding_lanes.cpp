@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "collision/geometry/eight_lanes.hpp"
 #include "collision/geometry/parallel.hpp"
 #include "collision/penetration/dipole_tree.hpp"
 
@@ -12,7 +13,7 @@ namespace selvedge {
 namespace {
 
 constexpr int width = 4;
-// Without AVX gcc would align these types to 16 bytes, but the code for AVX2 relies on 32.
+// Aligned for the reason that Eight is (eight_lanes.hpp).
 using Lanes [[gnu::vector_size(32), gnu::aligned(32)]] = double;
 using Marks [[gnu::vector_size(32), gnu::aligned(32)]] = long long;  // all bits of a lane, or none
 
@@ -144,22 +145,16 @@ struct Visit {
 void go_down_plain(const DipoleTree& tree, Group& group) { go_down(tree, group); }
 #if defined(__x86_64__)
 [[gnu::target("avx2")]] void go_down_avx2(const DipoleTree& tree, Group& group) { go_down(tree, group); }
+#else
+constexpr auto go_down_avx2 = go_down_plain;
 #endif
-
-using GoDown = void (*)(const DipoleTree&, Group&);
-GoDown for_this_machine() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return go_down_avx2;
-#endif
-  return go_down_plain;
-}
 
 }  // namespace
 
 std::vector<double> winding_numbers(const DipoleTree& tree, std::span<const WindingPoint> points) {
   std::vector<double> result(points.size(), 0);
   if (tree.faces.empty()) return result;
-  static const GoDown down = for_this_machine();
+  const auto down = has_avx2() ? go_down_avx2 : go_down_plain;
   const int count = static_cast<int>(points.size());
   parallel_for(chunks_of(count, width), 4, [&](int chunk) {
     Group group{{}, {}, {}, {}, Lanes{} + 1, {}};

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "collision/geometry/cell_grid.hpp"
+#include "collision/geometry/eight_lanes.hpp"
 #include "collision/geometry/stop_scope.hpp"
 #include "collision/search/bvh_traversal.hpp"
 
@@ -103,19 +104,14 @@ unsigned may_face_plain(const Bounds& a, const Block& b, float most) {
   return bits_of(low, high);
 }
 
-using MayFace = unsigned (*)(const Bounds&, const Block&, float);
-
 #if defined(__x86_64__)
-using WideLanes [[gnu::vector_size(32)]] = float;
-using WideFlags [[gnu::vector_size(32)]] = int;
 [[gnu::target("avx2")]] unsigned may_face_avx2(const Bounds& a, const Block& b, float most) {
-  WideFlags flags;
-  set_flags<WideLanes>(a, b, 0, most, flags);
-  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<WideLanes>(flags)));
+  EightBits flags;
+  set_flags<Eight>(a, b, 0, most, flags);
+  return bits_avx2(flags);
 }
-MayFace may_face_here() { return __builtin_cpu_supports("avx2") ? may_face_avx2 : may_face_plain; }
 #else
-MayFace may_face_here() { return may_face_plain; }
+constexpr auto may_face_avx2 = may_face_plain;
 #endif
 
 // Groups of a block, one bit each.
@@ -128,7 +124,7 @@ struct Near {
 struct PosedCubes {
   const FacingBody& body;
   const Points &x, &normals;
-  MayFace may_face = may_face_here();  // with AVX2 where the processor has it; the result is the same
+  unsigned (*may_face)(const Bounds&, const Block&, float) = has_avx2() ? may_face_avx2 : may_face_plain;
   CellGrid grid;
   Points x_near, normals_near, rest_near;
   std::vector<int> filled;        // cubes that hold vertices

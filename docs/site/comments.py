@@ -21,5 +21,5 @@ class Comments(griffe.Extension):
         ways = cls.overloads.get("__init__")
         if ways and cls.docstring:
             for way in ways:
-                arguments = ", ".join(p.name + ("" if p.required else "=...") for p in way.parameters if p.name != "self")
-                cls.docstring.value += f"\n\n`{cls.name}({arguments})`: {way.docstring.value}"
+                given = [p.name + ("" if p.required else "=...") for p in way.parameters if p.name != "self"]
+                cls.docstring.value += f"\n\n`{cls.name}({', '.join(given)})`: {way.docstring.value}"

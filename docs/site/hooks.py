@@ -50,7 +50,8 @@ def on_page_markdown(markdown, page, config, files):
         here = posixpath.normpath(posixpath.join(posixpath.dirname(source), path))
         uri = site_uri(here)
         if uri is not None:
-            return f"{bang}[{text}]({posixpath.relpath(uri, posixpath.dirname(page.file.src_uri) or '.')}{hash}{anchor})"
+            link = posixpath.relpath(uri, posixpath.dirname(page.file.src_uri) or ".")
+            return f"{bang}[{text}]({link}{hash}{anchor})"
         if not (ROOT / here).exists():
             log.warning(f"{source}: leads nowhere: {target}")
         return f"{text} (`{here}`)"
@@ -83,6 +84,7 @@ def taken_differently(markdown):
             yield number, "a list needs an empty line before it"
         if in_list and re.match(r" {1,3}(| {4})\S", line) and (not before.strip() or item.match(line.lstrip())):
             yield number, "what belongs to an item of a list needs four spaces before it"
-        in_list = bool(item.match(line)) or in_list and (not line.strip() or line.startswith(" ") or bool(before.strip()))
+        goes_on = not line.strip() or line.startswith(" ") or bool(before.strip())
+        in_list = bool(item.match(line)) or in_list and goes_on
         nested = in_list and line.startswith("    ") and (nested or not before.strip())
         before = line

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "physics/linear/cholesky.hpp"
 
 namespace selvedge {
@@ -32,7 +33,7 @@ double weight_norm(const Scene& scene, const Vec3& acceleration) {
 Equilibrium settle(const Scene& scene, const Points& start, const StaticLoad& load, const EquilibriumOptions& options) {
   ImplicitEuler solver(scene, options.implicit_euler);
   const Points rest_velocity = Points::Zero(start.rows(), 3), pins = start(scene.pins, Eigen::all);
-  const double extent = (start.colwise().maxCoeff() - start.colwise().minCoeff()).norm();
+  const double extent = box_diagonal(start);
   const double typical = std::sqrt(extent * solver.masses().norm() / load.size);
   Equilibrium result;
   result.x = start;

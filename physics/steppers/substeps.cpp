@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/geometry/box_diagonal.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -70,7 +72,7 @@ std::optional<Restart> restart_of(const State& from, const Drive& drive, int max
   for (std::size_t k = 0; k < from.obstacles.size(); ++k) {
     const Points& at = from.obstacles[k];
     if (at.rows() == 0) continue;
-    const double size = (at.colwise().maxCoeff() - at.colwise().minCoeff()).norm();
+    const double size = box_diagonal(at);
     const double way = (drive.obstacles[k] - at).colwise().mean().norm();
     if (!(way > max_substeps * size)) continue;
     if (!restart) restart = Restart{from};

@@ -26,12 +26,12 @@ def write_cache(exported, matrices, unit_scale, target):
 def put_cache(garment, file, first, step):
     """The modifier that plays the file; there is one, and it stands where the cloth was simulated."""
     modifier = sampling.cache_of(garment) or garment.modifiers.new(sampling.CACHE, "MESH_CACHE")
-    modifier.cache_format, modifier.filepath = "PC2", kept_path(file)
-    modifier.frame_start, modifier.frame_scale = first / step, 1 / step  # Blender shows sample frame * scale - start
     place = sampling.cache_place(garment)
-    if garment.modifiers.find(modifier.name) != place:
+    if garment.modifiers.find(modifier.name) != place:  # before it has a file, which fits the vertices of that place
         with bpy.context.temp_override(object=garment):
             bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=place)
+    modifier.cache_format, modifier.filepath = "PC2", kept_path(file)
+    modifier.frame_start, modifier.frame_scale = first / step, 1 / step  # Blender shows sample frame * scale - start
     garment.update_tag()
 
 

@@ -73,7 +73,7 @@ class SelvedgeSettings(bpy.types.PropertyGroup):
         name="Others", description="Further meshes that the cloth must not go through", type=bpy.types.Collection
     )
     together: PointerProperty(
-        name="Together with",
+        name="Bake with",
         description="Further garments that are baked at once with this one, each of its own material, pins and rest "
         "shape. All else is chosen here",
         type=bpy.types.Collection,

@@ -1,5 +1,6 @@
 #include "pipeline/bodies/joint_regressor.hpp"
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/factorisations.hpp"
 
@@ -78,7 +79,7 @@ SkinWeights joint_regressor(const BodyModel& body, const std::vector<std::option
 
 SkinWeights exact_regressor(const Points& x, const Points& joints, const std::string& where) {
   std::vector<Eigen::Triplet<double>> entries;
-  const double size = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double size = box_diagonal(x);
   for (int j = 0; j < joints.rows(); ++j) {
     const Eigen::VectorXd weights = exact_mean(x, row(joints, j));
     if (!weights.allFinite() || !((x.transpose() * weights - row(joints, j)).norm() <= 1e-6 * size))

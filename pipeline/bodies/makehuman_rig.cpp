@@ -5,15 +5,13 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
 namespace {
-
-using Json = nlohmann::json;
 
 // A value of a file, and where in it, for messages.
 struct Value {
@@ -49,7 +47,7 @@ struct Value {
   }
   int vertex() const {
     if (!json->is_number_integer() || *json < 0 || *json > std::numeric_limits<int>::max())
-      fail(json->dump() + " is no vertex", "vertices of the base mesh count from 0");
+      fail(json_line(*json) + " is no vertex", "vertices of the base mesh count from 0");
     return json->get<int>();
   }
 };
@@ -57,7 +55,7 @@ struct Value {
 Json parsed(const std::filesystem::path& path) {
   const std::string text = read_text_file(path, "JSON");
   try {
-    return Json::parse(text);
+    return parse_json(text);
   } catch (const Json::parse_error& problem) {
     const std::size_t end = std::min(problem.byte, text.size());
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/bodies/body.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 namespace selvedge::h5 {
 

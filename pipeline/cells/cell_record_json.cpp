@@ -8,7 +8,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
 
 }  // namespace
 
@@ -16,7 +15,7 @@ std::string cell_record_json(const CellRecord& record) {
   Json json = {{"cell", record.cell}, {"kind", record.kind},       {"program", record.program},
                {"key", record.key},   {"machine", record.machine}, {"passed", record.result.passed}};
   if (record.result.positions != 0) json["positions_hash"] = fmt::format("{:016x}", record.result.positions);
-  json["row"] = Json::parse(record.result.row);
+  json["row"] = parse_json(record.result.row);
   return json_text(json);
 }
 

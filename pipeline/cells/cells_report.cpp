@@ -8,8 +8,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // "3 are missing: a, b and 1 more"; empty where there are none.
 std::string named_cells(const std::vector<std::string>& names, const std::string& what) {
   constexpr std::size_t most_named = 5;
@@ -51,7 +49,7 @@ std::string done_cells_json(const std::vector<DoneCell>& cells) {
                        return Json{{"name", cell.record.cell},
                                    {"passed", cell.record.result.passed},
                                    {"kept", cell.kept},
-                                   {"row", Json::parse(cell.record.result.row)}};
+                                   {"row", parse_json(cell.record.result.row)}};
                      })}});
 }
 
@@ -80,7 +78,7 @@ std::string gathered_json(const CellList& list, const GatheredCells& gathered) {
                     {"of_other_program", gathered.of_other_program},
                     {"of_other_settings", gathered.of_other_settings},
                     {"machines", gathered.machines},
-                    {"result", Json::parse(gathered.tables.json)}});
+                    {"result", parse_json(gathered.tables.json)}});
 }
 
 }  // namespace selvedge

@@ -248,7 +248,7 @@ RunCommand export_command(CLI::App& command) {
     };
     const std::vector<std::filesystem::path> written = export_trajectory(shown);
     progress.end();
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Json list = Json::array();
     for (const std::filesystem::path& file : written) list.push_back(file.string());
     return end_command(json,
                        fmt::format("{}, the last is {}\n", counted(std::ssize(list), "file"), written.back().string()),

@@ -6,8 +6,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 double number_or_unknown(const Json& value) { return value.is_number() ? value.get<double>() : unknown; }
 
 Json numbers_of(const std::map<std::string, double>& values) {

@@ -6,14 +6,12 @@
 #include <set>
 
 #include "pipeline/compare/compare.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 
 namespace selvedge {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Column {
   const char* name;    // in files

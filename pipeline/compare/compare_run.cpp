@@ -10,7 +10,8 @@
 #include "collision/search/intersections.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/frame/frame_audits.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/measures/run_measures.hpp"
 #include "pipeline/reports/report_fields.hpp"
@@ -21,10 +22,6 @@
 
 namespace selvedge {
 namespace {
-
-std::uint64_t bits_of(const Points& x) {
-  return hash_of(std::string(reinterpret_cast<const char*>(x.data()), sizeof(double) * x.size()));
-}
 
 // The sink of a timed run.
 struct RunWatch {
@@ -140,7 +137,7 @@ std::optional<CompareRun> timed_run(const Setup& setup, const Start& start, cons
     return energies(setup.scene, watch.terms, at.x, at.v, setup.drive_at(at.time).acceleration).total();
   };
   run.lost = energy(start.state) - energy(state);
-  run.end = bits_of(state.x);
+  run.end = hash_of(bytes_of(state.x));
   if (watch.measures) {
     run.measures = watch.measures->values();
     run.pairs_by_frame = watch.measures->pairs_by_frame();

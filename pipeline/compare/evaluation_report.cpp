@@ -8,8 +8,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string shown(double value, const char* format = "{:.1f}") {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }

@@ -8,6 +8,7 @@
 #include "pipeline/cells/do_cells.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -39,10 +40,8 @@ std::optional<CellResult> run_path(DatasetWork& work, std::size_t number, const 
   if (!path) return {};
   write_drape_path(path_of_cell(folder), *path);
   std::uint64_t positions = hash_of("");
-  for (const Points& x : path->x)
-    positions = hash_of({reinterpret_cast<const char*>(x.data()), sizeof(double) * static_cast<std::size_t>(x.size())},
-                        positions);
-  const nlohmann::ordered_json row = {
+  for (const Points& x : path->x) positions = hash_of(bytes_of(x), positions);
+  const Json row = {
       {"path", number}, {"drapes", path->x.size()}, {"dropped", path->dropped}, {"seconds", path->seconds}};
   return CellResult{json_text(row), true, positions};
 }
@@ -180,10 +179,9 @@ std::string dataset_text(const DatasetSummary& s) {
 }
 
 std::string dataset_json(const DatasetSummary& s) {
-  const nlohmann::ordered_json json = {
-      {"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
-      {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
-      {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}};
+  const Json json = {{"folder", s.folder.string()},      {"finished", s.finished}, {"vertices", s.vertices},
+                     {"training", s.training},           {"test", s.test},         {"dropped", s.dropped},
+                     {"poses_redrawn", s.poses_redrawn}, {"seconds", s.seconds}};
   return json_text(json);
 }
 

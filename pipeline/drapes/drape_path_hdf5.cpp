@@ -3,7 +3,7 @@
 #include "collision/geometry/error.hpp"
 #include "physics/scene/memory.hpp"
 #include "pipeline/drapes/drape_set.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 namespace selvedge {
 namespace {

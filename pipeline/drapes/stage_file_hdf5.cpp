@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/formats/plain_network_hdf5.hpp"
+#include "pipeline/hdf5/plain_network_hdf5.hpp"
 
 namespace selvedge {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "collision/geometry/floating_point.hpp"
 #include "pipeline/drapes/drape_run.hpp"
-#include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/hdf5/neighbour_scale_hdf5.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -132,7 +132,7 @@ std::string drape_train_text(const DrapeTrainSummary& s) {
 }
 
 std::string drape_train_json(const DrapeTrainSummary& s) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  Json rows = Json::array();
   for (const DrapeTableRow& row : s.table)
     rows.push_back({{"row", row.name},
                     {"mpve_mm", row.vertex_error.mean},

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 
 namespace selvedge {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 
 namespace selvedge {
 

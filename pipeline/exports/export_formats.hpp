@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "pipeline/exports/animated_surfaces.hpp"
-#include "pipeline/formats/xdmf.hpp"
+#include "pipeline/hdf5/xdmf.hpp"
 
 namespace selvedge {
 

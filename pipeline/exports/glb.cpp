@@ -1,17 +1,16 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/exports/export_formats.hpp"
 #include "pipeline/exports/glb_look_json.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Level = Eigen::Matrix<int, 1, 3>;
 using Levels = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
@@ -101,11 +100,10 @@ struct Track {
     const PointsF all = gltf_normals(look, split, x);
     if (normals.empty()) {
       first_normals = all;
-      normals.emplace_back(reinterpret_cast<const char*>(all.data()), static_cast<std::size_t>(all.size()) * 4);
+      normals.emplace_back(bytes_of(all));
     }
     if (!as_target) return;
-    const PointsF added = all - first_normals;
-    normals.emplace_back(reinterpret_cast<const char*>(added.data()), static_cast<std::size_t>(added.size()) * 4);
+    normals.emplace_back(bytes_of(PointsF(all - first_normals)));
   }
   void put(const Levels& values, bool middle_itself) {
     const std::size_t begin = bytes.size();
@@ -146,7 +144,7 @@ std::vector<Track> tracks_of(const AnimatedSurfaces& run, const std::vector<Rang
 }
 
 // Floats of so many rows as an attribute.
-int put_floats(Chunk& chunk, const std::string& floats, Eigen::Index rows, const char* type) {
+int put_floats(Chunk& chunk, std::string_view floats, Eigen::Index rows, const char* type) {
   const std::size_t begin = chunk.bytes.size();
   chunk.bytes += floats;
   const int view = chunk.view(begin, {{"target", vertex_data}});
@@ -158,8 +156,7 @@ void put_look(Chunk& chunk, const Look& look, const SplitVertices& split, Track&
               Json& targets) {
   if (!look.corner_uv.empty()) {
     const auto uv = gltf_uv(look, split);
-    const std::string floats(reinterpret_cast<const char*>(uv.data()), static_cast<std::size_t>(uv.size()) * 4);
-    attributes["TEXCOORD_0"] = put_floats(chunk, floats, uv.rows(), "VEC2");
+    attributes["TEXCOORD_0"] = put_floats(chunk, bytes_of(uv), uv.rows(), "VEC2");
   }
   for (std::size_t k = 0; k < track.normals.size(); ++k)
     (k == 0 ? attributes : targets[k - 1])["NORMAL"] =
@@ -320,7 +317,7 @@ std::vector<std::filesystem::path> export_glb(const AnimatedSurfaces& given, con
   all["accessors"] = chunk.accessors;
   const Json buffer = {{"byteLength", chunk.bytes.size()}};
   all["buffers"] = Json::array({buffer});
-  write_chunks(path, all.dump(-1, ' ', false, Json::error_handler_t::replace), chunk.bytes);
+  write_chunks(path, json_line(all), chunk.bytes);
   return {path};
 }
 

@@ -9,7 +9,7 @@
 namespace selvedge {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
+using OrderedJson = Json;
 
 // Parts the vertices of one surface, whose triangles become those of parted vertices.
 SplitVertices part_vertices(AnimatedSurface& surface) {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "pipeline/exports/export_materials.hpp"
 #include "pipeline/exports/moved_normals.hpp"
+#include "pipeline/host/json_text.hpp"
 
 namespace selvedge {
 
@@ -32,9 +31,9 @@ struct GltfPrimitive {
 std::vector<GltfPrimitive> primitives_of(const AnimatedSurface&);
 
 // The materials, images and textures of a file, by the tables' names; to them surfaces add what they have by default.
-void put_materials(const ExportMaterials&, nlohmann::ordered_json& materials, nlohmann::ordered_json& all);
+void put_materials(const ExportMaterials&, Json& materials, Json& all);
 
 // What a primitive says of its part, in `extras`; empty where it has no names.
-nlohmann::ordered_json part_extras(const Look&, int part);
+Json part_extras(const Look&, int part);
 
 }  // namespace selvedge

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "pipeline/formats/look.hpp"
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 
 namespace selvedge {
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
@@ -34,8 +35,6 @@ int lower_elsewhere(const std::vector<int>& stands_for) {
   return count;
 }
 
-double largest_extent(const Points& x) { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
-
 // Of each vertex the one that it is joined into, and what that comes to.
 struct Joining {
   std::vector<int> stands_for;
@@ -57,7 +56,7 @@ Joining joining_of(const Points& x, const Surface& surface, double distance) {
 }
 
 double distance_of(const Points& x, const Surface& surface) {
-  return std::max(1e-3 * mean_edge(surface, x), 1e-6 * largest_extent(x));
+  return std::max(1e-3 * mean_edge(surface, x), 1e-6 * box_diagonal(x));
 }
 
 Surface surface_of(const Points& x, const Triangles& triangles) {

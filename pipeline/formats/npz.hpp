@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "pipeline/formats/npy.hpp"
+#include "pipeline/formats/zip_archive.hpp"
 
 namespace selvedge {
 
@@ -15,8 +15,6 @@ namespace selvedge {
 class Npz {
  public:
   explicit Npz(const std::filesystem::path&);  // throws Error for a file that cannot be opened or is no .npz
-  Npz(Npz&&) noexcept;
-  ~Npz();
 
   bool has(const std::string& name) const;
   std::vector<std::string> names() const;  // in the order of the file
@@ -28,11 +26,10 @@ class Npz {
   NpyArray<std::string> texts(const std::string& name) const;
 
  private:
-  struct Archive;
   std::string bytes(const std::string& name) const;
 
   std::filesystem::path path_;
-  std::unique_ptr<Archive> archive_;
+  ZipArchive archive_;
 };
 
 }  // namespace selvedge

@@ -8,9 +8,9 @@
 namespace selvedge {
 namespace {
 
-constexpr double least_quality = 1e-6;  // of a triangle with area: twice that over its longest edge squared
-constexpr double most_warped = 0.1;     // height of a flat quad's last corner over the others, over their distance
-constexpr double on_edge = 1e-9;        // a corner outside by less than this quality counts as on the edge
+constexpr double least_quality = 1e-6;   // of a triangle with area: twice that over its longest edge squared
+constexpr double most_warped = 0.1;      // height of a flat quad's last corner over the others, over their distance
+constexpr double edge_tolerance = 1e-9;  // a corner outside by less than this quality counts as on the edge
 
 Vec3 twice_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
@@ -62,8 +62,8 @@ struct EarCutter {
     for (const int other : left) {
       const Vec3& p = corners[other];
       if (other == a || other == b || other == c || p == A || p == B || p == C) continue;
-      if (shape_quality(A, B, p, normal) > -on_edge && shape_quality(B, C, p, normal) > -on_edge &&
-          shape_quality(C, A, p, normal) > -on_edge)
+      if (shape_quality(A, B, p, normal) > -edge_tolerance && shape_quality(B, C, p, normal) > -edge_tolerance &&
+          shape_quality(C, A, p, normal) > -edge_tolerance)
         return false;
     }
     return true;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/bodies/skin_hdf5.hpp"
-#include "pipeline/formats/look_hdf5.hpp"
+#include "pipeline/hdf5/look_hdf5.hpp"
 
 namespace selvedge {
 namespace {

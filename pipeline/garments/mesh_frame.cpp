@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/surface.hpp"
 #include "collision/search/intersections.hpp"
@@ -19,18 +20,16 @@ constexpr double deep = 0.05;           // inside the body, of the garment's ext
 constexpr Eigen::Index most_sampled = 256;
 constexpr double crosses_much = 10;  // times as many pairs with the body as with the other axis, and as many pairs more
 
-double extent_of(const Points& x) { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); }
-
 bool fits_box(const Points& x, const Points& body) {
-  const double size = extent_of(body), more = beyond_box * size;
+  const double size = box_diagonal(body), more = beyond_box * size;
   const Eigen::RowVector3d low = x.colwise().minCoeff() - body.colwise().minCoeff();
   const Eigen::RowVector3d high = body.colwise().maxCoeff() - x.colwise().maxCoeff();
-  return extent_of(x) >= least_extent * size && std::min(low.minCoeff(), high.minCoeff()) >= -more;
+  return box_diagonal(x) >= least_extent * size && std::min(low.minCoeff(), high.minCoeff()) >= -more;
 }
 
 double off_body(const Points& x, const Points& body, const Points& normals) {
   const Eigen::Index step = 1 + (x.rows() - 1) / most_sampled;
-  const double size = extent_of(x);
+  const double size = box_diagonal(x);
   double distances = 0, inside = 0, count = 0;
   for (Eigen::Index v = 0; v < x.rows(); v += step, ++count) {
     Eigen::Index foot = 0;

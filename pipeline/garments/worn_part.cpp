@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "collision/geometry/box_diagonal.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -26,7 +28,7 @@ bool is_covered(const WornPart::Place& place, const Points& x, const Points& bod
 
 WornPart worn_part(const Points& x, const Points& body, double near) {
   assert(x.rows() > 0 && body.rows() > 0);
-  const double reach = near * (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double reach = near * box_diagonal(x);
   const Eigen::Index step = 1 + (x.rows() - 1) / most_places, sampled = 1 + (x.rows() - 1) / step;
   WornPart part;
   for (Eigen::Index v = 0; v < x.rows(); v += step) {

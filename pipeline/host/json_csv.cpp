@@ -2,22 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include "pipeline/host/json_text.hpp"
 
 namespace selvedge {
 namespace {
 
-std::string cell(const nlohmann::ordered_json& value) {
+std::string cell(const Json& value) {
   if (value.is_array()) return fmt::format("\"{}\"", fmt::join(value.get<std::vector<std::string>>(), "; "));
   if (value.is_string()) return fmt::format("\"{}\"", value.get<std::string>());
-  return value.dump();
+  return json_line(value);
 }
 
 }  // namespace
 
 std::string csv_of_json(const std::string& array) {
   std::vector<std::string> lines;
-  for (const nlohmann::ordered_json& row : nlohmann::ordered_json::parse(array)) {
+  for (const Json& row : parse_json(array)) {
     std::vector<std::string> titles, cells;
     for (const auto& [name, value] : row.items()) {
       titles.push_back(name);

@@ -1,10 +1,10 @@
 #include "pipeline/measures/fit_regions.hpp"
 
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/factorisations.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -52,8 +52,8 @@ Vec3 longest_direction(const Points& x, const std::vector<int>& vertices) {
   return symmetric_spectrum3(centred.transpose() * centred).vectors.col(2);
 }
 
-nlohmann::ordered_json parsed_regions(const std::filesystem::path& file) {
-  const auto all = nlohmann::ordered_json::parse(read_text_file(file, "segmentation"), nullptr, false);
+Json parsed_regions(const std::filesystem::path& file) {
+  const auto all = parse_json_or_discard(read_text_file(file, "segmentation"));
   if (all.is_discarded() || !all.is_object() || all.empty())
     throw Error("is no segmentation of a body", file.string(), "give a JSON object of lists of vertices by name");
   return all;
@@ -79,14 +79,14 @@ FitRegions regions_of_file(const std::filesystem::path& file, const Points& body
   const auto count = static_cast<std::int64_t>(body.rows());
   FitRegions found;
   found.of_vertex.assign(static_cast<std::size_t>(count), -1);
-  const nlohmann::ordered_json all = parsed_regions(file);
+  const Json all = parsed_regions(file);
   for (const auto& [name, list] : all.items()) {
     if (!list.is_array()) throw Error("`" + name + "` is no list of vertices", file.string(), "give whole numbers");
     std::vector<int> own;
     for (const auto& entry : list) {
       const std::int64_t vertex = entry.is_number_integer() ? entry.get<std::int64_t>() : -1;
       if (vertex < 0 || vertex >= count)
-        throw Error("`" + name + "` names " + entry.dump() + ", which is no vertex of the body", file.string(),
+        throw Error("`" + name + "` names " + json_line(entry) + ", which is no vertex of the body", file.string(),
                     "the body has " + std::to_string(count) + " vertices, counted from 0");
       own.push_back(static_cast<int>(vertex));
       int& region = found.of_vertex[static_cast<std::size_t>(vertex)];

@@ -39,7 +39,6 @@ void check_has_poses(const Clip& clip) {
   if (!(clip.fps > 0)) throw Error("has no frame rate", "clip " + clip.name, "");
 }
 
-double ease(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
 double ease_integral_to_end(double s) { return 0.5 - s * s * s * s * (2.5 + s * (s - 3)); }
 
 // The rotation about the vertical in a rotation (swing and twist).
@@ -103,6 +102,11 @@ BodyPose matched(const BodyPose& pose, const std::vector<std::string>& from, con
       result.rotations.row(static_cast<Eigen::Index>(j)) = pose.rotations.row(found - from.begin());
   }
   return result;
+}
+
+double ease(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
 }
 
 Clip blended_in(const Clip& clip, double seconds, StartPose start) {

@@ -30,6 +30,9 @@ BodyPose matched(const BodyPose&, const std::vector<std::string>& from, const st
 // The pose from which a blend starts: all rotations zero (arms out), or with the upper arms turned down by 45 degrees.
 enum class StartPose { zero, arms_down };
 
+// From 0 at s = 0 to 1 at s = 1, where velocity and acceleration are 0; constant beyond.
+double ease(double s);
+
 // The clip after a lead-in of that many seconds, rounded up to whole frames, in which the body moves from the start
 // pose to frame 0 and reaches it with the clip's velocity. The start pose has the heading and height of frame 0. Throws
 // Error if seconds are negative or the clip has no poses.

@@ -32,13 +32,13 @@ NpyArray<double> table(const Npz& npz, const std::string& field, Index frames, I
   return array;
 }
 
-struct Part {
+struct RotationPart {
   std::string field;
   Index joints;
 };
 
 // The fields with the rotations, in the order of the joints' names.
-std::vector<Part> rotation_parts(const Npz& npz) {
+std::vector<RotationPart> rotation_parts(const Npz& npz) {
   if (!npz.has("root_orient") && npz.has("poses")) {
     const NpyArray<double> poses = table(npz, "poses", -1, -1);
     const Index columns = poses.shape[1];
@@ -48,7 +48,7 @@ std::vector<Part> rotation_parts(const Npz& npz) {
   }
   if (!npz.has("root_orient"))
     fail(npz, "poses", "is missing, and so is `root_orient`", "it is no AMASS file, or only a part of one");
-  std::vector<Part> parts = {{"root_orient", 1}, {"pose_body", 21}};
+  std::vector<RotationPart> parts = {{"root_orient", 1}, {"pose_body", 21}};
   if (npz.has("pose_jaw") && npz.has("pose_eye") && npz.has("pose_hand"))
     parts.insert(parts.end(), {{"pose_jaw", 1}, {"pose_eye", 2}, {"pose_hand", 30}});
   return parts;
@@ -111,16 +111,16 @@ Eigen::VectorXd read_amass_shape(const std::filesystem::path& path, std::vector<
 
 Clip read_amass(const std::filesystem::path& path, const Vec3& pelvis, std::vector<std::string>& warnings, int shapes) {
   const Npz npz(path);
-  const std::vector<Part> parts = rotation_parts(npz);
+  const std::vector<RotationPart> parts = rotation_parts(npz);
   const NpyArray<double> trans = table(npz, "trans", -1, 3);
   const Index frames = trans.shape[0];
   if (frames == 0) fail(npz, "trans", "has no frames", "leave the file out, or write it anew where it was made");
 
   Index joints = 0;
-  for (const Part& part : parts) joints += part.joints;
+  for (const RotationPart& part : parts) joints += part.joints;
   Points rotations(frames * joints, 3);
   Index first = 0;
-  for (const Part& part : parts) {
+  for (const RotationPart& part : parts) {
     const NpyArray<double> values = table(npz, part.field, frames, 3 * part.joints);
     for (Index f = 0; f < frames; ++f)
       rotations.middleRows(f * joints + first, part.joints) =

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/motions/clip.hpp"
+
 namespace selvedge {
 namespace {
 
 constexpr double gravity = 9.81, frames_per_second = 30;
-
-double ease(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 // From 0 up to `height` at `top` and back to 0.
 double bump(double from, double top, double to, double height, double width, double t) {

@@ -19,6 +19,7 @@
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/motions/clip_amass.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
@@ -154,20 +155,6 @@ void forget(PosedBodies& known) {
   known.skin.reset();
 }
 
-// Of all that decides which poses with soft tissue a run meets: it only names a file.
-std::uint64_t hash_of_performance(const Performance& who, double room) {
-  std::uint64_t hash = hash_of(fmt::format("{} {:a} {} {:a}", GiveWay::recipe, room, who.clip.name, who.clip.fps));
-  const auto take = [&](const auto& matrix) {
-    hash = hash_of({reinterpret_cast<const char*>(matrix.data()),
-                    sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size())},
-                   hash);
-  };
-  take(who.surface.triangles);
-  take(shaped(who.body.skin, who.shape));
-  for (const BodyPose& pose : who.clip.poses) take(pose.rotations);
-  return hash;
-}
-
 void leave_room(double room, Performance& who) {
   who.soft_tissue = nullptr;
   if (room > 0)
@@ -175,7 +162,7 @@ void leave_room(double room, Performance& who) {
         std::make_shared<GiveWay>(who.surface, shaped(who.body.skin, who.shape), GiveWayOptions{.room = room});
   forget(*who.known);
   who.known->room = room;
-  who.known->performance = room > 0 ? hash_of_performance(who, room) : 0;
+  who.known->performance = room > 0 ? hash_of_performance(who.surface, who.body.skin, who.shape, who.clip, room) : 0;
 }
 
 Points with_soft_tissue(const GiveWay& tissue, const Points& skinned, PosedBodies& known) {
@@ -278,10 +265,20 @@ void come_from(const Points& rotations, double begins, double seconds, Performan
   forget(*who.known);
 }
 
+std::uint64_t hash_of_performance(const Surface& surface, const SkinnedSurface& skin, const Eigen::VectorXd& shape,
+                                  const Clip& clip, double room) {
+  std::uint64_t hash = hash_of(fmt::format("{} {:a} {} {:a}", GiveWay::recipe, room, clip.name, clip.fps));
+  const auto take = [&](const auto& numbers) { hash = hash_of(bytes_of(numbers), hash); };
+  take(surface.triangles);
+  take(shaped(skin, shape));
+  for (const BodyPose& pose : clip.poses) take(pose.rotations);
+  return hash;
+}
+
 void read_tissue(const std::filesystem::path& folder, const std::vector<std::shared_ptr<PosedBodies>>& bodies) {
   for (const auto& body : bodies)
     if (body && body->performance != 0 && !folder.empty())
-      body->store = std::make_shared<TissueStore>(read_tissue_store(folder / "tissue", body->performance));
+      body->store = std::make_shared<TissueStore>(read_tissue_store(folder, body->performance));
 }
 
 void write_tissue(const std::vector<std::shared_ptr<PosedBodies>>& bodies) {

@@ -89,6 +89,9 @@ void wear(int garments, Performance&);
 // time 0 within `seconds`, and holds it from then on.
 void come_from(const Points& rotations, double begins, double seconds, Performance&);
 
+// A hash of all that decides which poses with soft tissue a body meets in a clip; it only names a file.
+std::uint64_t hash_of_performance(const Surface&, const SkinnedSurface&, const Eigen::VectorXd& shape, const Clip&,
+                                  double room);
 // Gives the bodies the stores of soft tissue that a cache folder has for them; empty: none.
 void read_tissue(const std::filesystem::path& folder, const std::vector<std::shared_ptr<PosedBodies>>& bodies);
 // Writes stores that have grown. Throws Error if the folder cannot be written.

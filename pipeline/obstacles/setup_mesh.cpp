@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
@@ -53,7 +54,7 @@ void refuse_far(const Config& at, const std::string& noun, const Points& x) {
 
 void warn_of_extent(const Config& at, const std::string& noun, double largest, const Points& x,
                     std::vector<std::string>& warnings) {
-  const double extent = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double extent = box_diagonal(x);
   if (at["unit"].given || (extent <= largest && extent >= smallest)) return;
   warnings.push_back(fmt::format("{} spans {:.3g} m; if its file is not in metres, say so by the key `unit` ({})", noun,
                                  extent, likely_unit(extent)));

@@ -7,7 +7,7 @@
 #include "collision/geometry/same_places.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/obstacles/numbered_files.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_obstacle.hpp"

@@ -6,23 +6,18 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/bounded_folder.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/write_file.hpp"
 
 namespace selvedge {
 namespace {
 
-constexpr std::size_t most_in_store = std::size_t{25} << 20;        // coordinates
-constexpr std::uintmax_t most_in_folder = std::uintmax_t{1} << 30;  // bytes of all stores
+constexpr std::size_t most_in_store = std::size_t{25} << 20;  // coordinates
 
 const h5::FileForm tissue_form{"selvedge tissue 1", "soft tissue", "docs/bodies.md"};
-
-std::uint64_t key_of(const Points& skinned) {
-  return hash_of(
-      {reinterpret_cast<const char*>(skinned.data()), sizeof(double) * static_cast<std::size_t>(skinned.size())});
-}
 
 // All poses on end: the halves of their keys, how many vertices move in each, which, and where they are.
 void read_poses(const h5::Fields& file, TissueStore& store) {
@@ -45,9 +40,10 @@ void read_poses(const h5::Fields& file, TissueStore& store) {
 
 }  // namespace
 
-TissueStore read_tissue_store(const std::filesystem::path& folder, std::uint64_t performance) {
+TissueStore read_tissue_store(const std::filesystem::path& cache, std::uint64_t performance) {
   TissueStore store;
-  store.file = folder / fmt::format("{:016x}.h5", performance);
+  if (cache.empty()) return store;
+  store.file = cache / "tissue" / fmt::format("{:016x}.h5", performance);
   std::error_code ignored;
   if (!std::filesystem::exists(store.file, ignored)) return store;
   try {
@@ -60,7 +56,7 @@ TissueStore read_tissue_store(const std::filesystem::path& folder, std::uint64_t
 }
 
 std::optional<Points> known_tissue(const TissueStore& store, const Points& skinned) {
-  const auto found = store.poses.find(key_of(skinned));
+  const auto found = store.poses.find(hash_of(bytes_of(skinned)));
   if (found == store.poses.end()) return {};
   const TissueStore::Pose& pose = found->second;
   const auto is_vertex = [&](int v) { return v >= 0 && v < skinned.rows(); };
@@ -79,11 +75,11 @@ void keep_tissue(const Points& skinned, const Points& given, TissueStore& store)
   if (store.numbers + count > most_in_store) return;
   store.numbers += count;
   store.grown = true;
-  store.poses[key_of(skinned)] = std::move(pose);
+  store.poses[hash_of(bytes_of(skinned))] = std::move(pose);
 }
 
-void write_tissue_store(TissueStore& store) {
-  if (!std::exchange(store.grown, false)) return;
+void write_tissue_store(TissueStore& store, std::uintmax_t most) {
+  if (store.file.empty() || !std::exchange(store.grown, false)) return;
   std::vector<int> keys, counts, vertices;
   Points x(static_cast<Eigen::Index>(store.numbers / 3), 3);
   Eigen::Index at = 0;
@@ -103,7 +99,7 @@ void write_tissue_store(TissueStore& store) {
       h5::write_points(file, "positions", x);
     });
   });
-  keep_within(store.file.parent_path(), most_in_folder);
+  keep_within(store.file.parent_path(), most);
 }
 
 }  // namespace selvedge

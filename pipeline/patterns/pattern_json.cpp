@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/library_message.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/patterns/pattern.hpp"
@@ -12,8 +12,6 @@
 
 namespace selvedge {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const std::string form_cure = "docs/patterns.md says what a pattern file holds";
 
@@ -81,7 +79,7 @@ struct PatternReader {
 
   int index(const Json& value, std::size_t count, const std::string& where, const std::string& what) const {
     if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() >= static_cast<double>(count))
-      fail(where, fmt::format("{} {} does not exist", what, value.dump()),
+      fail(where, fmt::format("{} {} does not exist", what, json_line(value)),
            fmt::format("there are {}, counted from 0", count));
     return value.get<int>();
   }
@@ -172,7 +170,7 @@ struct PatternReader {
     const auto found = std::ranges::find(known, name);
     const Json& edge = member(json, "edge", where);
     if (found == known.end())
-      fail(where, fmt::format("joins edge {} of the missing panel `{}`", edge.dump(), name),
+      fail(where, fmt::format("joins edge {} of the missing panel `{}`", json_line(edge), name),
            "panels: " + joined(known) + suggestion(name, known));
     const auto panel = static_cast<std::size_t>(found - known.begin());
     return {static_cast<int>(panel),
@@ -219,7 +217,7 @@ struct PatternReader {
 Pattern pattern_of(const std::string& json, const std::string& file) {
   Json parsed;
   try {
-    parsed = Json::parse(without_nan(json));
+    parsed = parse_json(without_nan(json));
   } catch (const Json::exception& error) {
     throw Error("is no JSON: " + library_message(error.what()), file, form_cure);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/processes/together.hpp"
 
@@ -60,10 +61,7 @@ void check_same_weights(Processes& processes, const Architecture& architecture, 
                         const std::string& where) {
   NetworkWeights copy = weights;
   std::uint64_t hash = hash_of("");
-  for (const WeightArray& array : weight_arrays(architecture, copy)) {
-    const std::span<float> numbers = numbers_of(array);
-    hash = hash_of({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()}, hash);
-  }
+  for (const WeightArray& array : weight_arrays(architecture, copy)) hash = hash_of(bytes_of(numbers_of(array)), hash);
   check_same(processes, hash, "weights", where,
              "go on from the last checkpoint; if it happens again, their processors compute differently");
 }

@@ -12,7 +12,7 @@
 
 #include "physics/frame/frame_audits.hpp"
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"

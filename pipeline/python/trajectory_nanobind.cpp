@@ -5,7 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
 #include "pipeline/python/fields_nanobind.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "physics/energies/measures.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/run/simulate.hpp"
 
 namespace selvedge {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/run/memory_forms.hpp"
@@ -190,19 +190,19 @@ std::optional<EndedRun> read_ended(const std::filesystem::path& folder, const Ru
   const std::filesystem::path file = folder / "summary.json", trajectory = folder / "run.h5";
   if (!std::filesystem::exists(file)) return {};
   EndedRun ended{read_text_file(file, "summary")};
-  nlohmann::json json = nlohmann::json::parse(ended.summary, nullptr, false);
+  Json json = parse_json_or_discard(ended.summary);
   if (!json.is_object() || !json.contains("end")) refuse(file, "end", "is missing: this is no summary of a run");
   if (json["end"] == "interrupted") return {};
   check_config(trajectory, TrajectoryReader(trajectory).info().config, inputs.config);
   const std::string hash = fmt::format("{:016x}", hash_of_inputs(inputs));
-  if (json.value("inputs_hash", nlohmann::json()) != hash)
+  if (json.value("inputs_hash", Json()) != hash)
     refuse(file, "inputs_hash",
            "is not that of the files of the scene: they have changed, or it is of another version");
-  ended.clean = json.value("clean", nlohmann::json()) == true;
+  ended.clean = json.value("clean", Json()) == true;
   LabelLines add{20};
-  add("ended before", fmt::format("{}, {} of {} frames, {}", json["end"].get<std::string>(), json["frames"].dump(),
-                                  json["frames_wanted"].dump(), ended.clean ? "clean" : "not clean"));
-  for (nlohmann::json& outcome : json["outcomes"])
+  add("ended before", fmt::format("{}, {} of {} frames, {}", json["end"].get<std::string>(), json_line(json["frames"]),
+                                  json_line(json["frames_wanted"]), ended.clean ? "clean" : "not clean"));
+  for (Json& outcome : json["outcomes"])
     add("outcome", outcome["name"].get<std::string>() + (outcome["came_true"] == true ? ": yes" : ": no"));
   ended.text = add.text;
   return ended;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/formats/checkpoint.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {

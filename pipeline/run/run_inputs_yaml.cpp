@@ -3,11 +3,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bytes_of.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 
@@ -47,9 +49,9 @@ std::vector<fs::path> numbered_files(const fs::path& name) {
 std::vector<fs::path> gltf_buffers(const fs::path& file) {
   std::vector<fs::path> buffers;
   std::ifstream in(file);
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  const Json json = parse_json_or_discard({std::istreambuf_iterator<char>(in), {}});
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return buffers;
-  for (const nlohmann::json& buffer : json["buffers"])
+  for (const Json& buffer : json["buffers"])
     if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string())
       if (const std::string uri = buffer["uri"]; !uri.starts_with("data:")) buffers.push_back(file.parent_path() / uri);
   return buffers;
@@ -76,8 +78,7 @@ std::uint64_t hash_of_tree(const YAML::Node& node, const fs::path& folder, std::
   if (node.IsScalar()) {
     const std::vector<InputFile> files = hashed_files({node.Scalar()}, folder);
     if (files.empty()) return hash_of(node.Scalar() + "\n", hash);
-    for (const InputFile& file : files)
-      hash = hash_of({reinterpret_cast<const char*>(&file.hash), sizeof file.hash}, hash);
+    for (const InputFile& file : files) hash = hash_of(bytes_of(std::array{file.hash}), hash);
     return hash;
   }
   if (node.IsSequence())
@@ -93,33 +94,26 @@ std::uint64_t hash_of_tree(const YAML::Node& node, const fs::path& folder, std::
 struct ArraysHash {
   std::uint64_t hash = hash_of("");
 
-  void add(const void* data, std::size_t bytes) {
-    hash = hash_of({reinterpret_cast<const char*>(&bytes), sizeof bytes}, hash);
-    hash = hash_of({static_cast<const char*>(data), bytes}, hash);
-  }
-  template <class Matrix>
-  void matrix(const Matrix& values) {
-    add(values.data(), sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(values.size()));
-  }
-  template <class Value>
-  void list(const std::vector<Value>& values) {
-    add(values.data(), sizeof(Value) * values.size());
+  template <class Numbers>
+  void add(const Numbers& values) {
+    const std::string_view bytes = bytes_of(values);
+    hash = hash_of(bytes, hash_of(bytes_of(std::array{bytes.size()}), hash));
   }
 };
 
 // Covers what code makes or the cache holds, which no file of the scene shows.
 std::uint64_t scene_hash(const Setup& setup) {
   ArraysHash all;
-  all.matrix(setup.scene.rest);
-  all.matrix(setup.scene.surface.triangles);
-  all.list(setup.scene.rest_triangle);
-  all.list(setup.scene.pins);
-  for (const Spring& spring : setup.scene.springs) all.matrix(Eigen::Vector2d(spring.rest_length, spring.stiffness));
-  for (const Obstacle& obstacle : setup.scene.obstacles) all.matrix(obstacle.surface.triangles);
+  all.add(setup.scene.rest);
+  all.add(setup.scene.surface.triangles);
+  all.add(setup.scene.rest_triangle);
+  all.add(setup.scene.pins);
+  for (const Spring& spring : setup.scene.springs) all.add(Eigen::Vector2d(spring.rest_length, spring.stiffness));
+  for (const Obstacle& obstacle : setup.scene.obstacles) all.add(obstacle.surface.triangles);
   const Drive begin = setup.drive_at(0);
-  all.matrix(begin.pins);
-  all.matrix(begin.skinned_targets);
-  for (const Points& obstacle : begin.obstacles) all.matrix(obstacle);
+  all.add(begin.pins);
+  all.add(begin.skinned_targets);
+  for (const Points& obstacle : begin.obstacles) all.add(obstacle);
   return all.hash;
 }
 
@@ -159,12 +153,12 @@ RunInputs run_inputs(const Setup& setup) { return {setup.config, input_files(set
 
 std::uint64_t hash_of_inputs(const RunInputs& inputs) {
   ArraysHash all;
-  all.add(inputs.config.data(), inputs.config.size());
+  all.add(inputs.config);
   for (const InputFile& file : inputs.files) {
-    all.add(file.name.data(), file.name.size());
-    all.add(&file.hash, sizeof file.hash);
+    all.add(file.name);
+    all.add(std::array{file.hash});
   }
-  all.add(&inputs.scene, sizeof inputs.scene);
+  all.add(std::array{inputs.scene});
   return all.hash;
 }
 

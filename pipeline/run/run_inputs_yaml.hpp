@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/scene/setup.hpp"
 
 namespace selvedge {

@@ -5,7 +5,7 @@
 
 #include "collision/geometry/stop_scope.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/formats/xdmf.hpp"
+#include "pipeline/hdf5/xdmf.hpp"
 #include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/peak_memory.hpp"
 #include "pipeline/host/version.hpp"

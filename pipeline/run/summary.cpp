@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "collision/geometry/counted.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -51,8 +52,8 @@ void add_labels(const StepReport& report, int index, RunSummary& summary) {
   }
 }
 
-nlohmann::ordered_json switched_off_json(const RunSummary& s) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+Json switched_off_json(const RunSummary& s) {
+  Json all = Json::array();
   for (const RunSummary::SwitchedOff& one : s.switched_off)
     if (one.frames > 0)
       all.push_back({{"obstacle", one.obstacle},
@@ -89,11 +90,11 @@ void add_doubtful(const RunSummary& s, LabelLines& add) {
             ": the audit of their motion is not whole, and what it gave up counts as passed through");
 }
 
-nlohmann::ordered_json total_json(const BoundField<StepReport>& field, const FieldTotal& total, const InSummary& one,
-                                  const RunSummary& s) {
+Json total_json(const BoundField<StepReport>& field, const FieldTotal& total, const InSummary& one,
+                const RunSummary& s) {
   if (one.over == Over::by_obstacle) return switched_off_json(s);
   if (one.over == Over::by_word) {
-    nlohmann::ordered_json words = nlohmann::ordered_json::object();
+    Json words = Json::object();
     for (std::size_t k = 0; k < total.by_word.size(); ++k)
       if (total.by_word[k] > 0) words[field.words[k]] = total.by_word[k];
     return words;
@@ -105,7 +106,7 @@ nlohmann::ordered_json total_json(const BoundField<StepReport>& field, const Fie
 }
 
 // Adds the totals that the table of fields (report_fields.cpp) asks for.
-void put_totals(const RunSummary& s, nlohmann::ordered_json& json) {
+void put_totals(const RunSummary& s, Json& json) {
   for (std::size_t k = 0; k < report_fields().size(); ++k)
     for (const InSummary& one : report_fields()[k].in_summary)
       if (one.over != Over::milliseconds && one.over != Over::milliseconds_where_there)
@@ -116,9 +117,7 @@ void put_totals(const RunSummary& s, nlohmann::ordered_json& json) {
 
 void add_frame(RunSummary& summary, int index, const Frame& frame) {
   const StepReport& report = frame.report;
-  const std::string_view positions(reinterpret_cast<const char*>(frame.x.data()),
-                                   sizeof(float) * static_cast<std::size_t>(frame.x.size()));
-  summary.positions_hash = hash_of(positions, index > 0 ? summary.positions_hash : hash_of(""));
+  summary.positions_hash = hash_of(bytes_of(frame.x), index > 0 ? summary.positions_hash : hash_of(""));
   if (index > 0) {
     if (report.status == StepStatus::accepted) ++summary.frames;
     summary.frame_seconds.push_back(frame.seconds);
@@ -173,19 +172,19 @@ bool is_clean(const RunSummary& summary) {
 }
 
 std::string summary_json(const RunSummary& s) {
-  nlohmann::ordered_json phases, left_out = nlohmann::ordered_json::array();
+  Json phases, left_out = Json::array();
   for (const auto& [name, milliseconds] : phases_in_milliseconds(s)) phases[name] = milliseconds;
   for (const PlanLine& line : s.left_out) left_out.push_back({{"feature", line.feature}, {"why", line.why}});
-  nlohmann::ordered_json slid_off = nlohmann::ordered_json::array();
+  Json slid_off = Json::array();
   for (const WornWatch& one : s.slid_off)
     slid_off.push_back({{"garment", one.garment}, {"body", one.body}, {"frame", one.left_in}});
-  nlohmann::ordered_json outcomes = nlohmann::ordered_json::array();
+  Json outcomes = Json::array();
   for (const OutcomeResult& one : s.outcomes)
     outcomes.push_back({{"name", one.name},
                         {"came_true", one.came_true},
-                        {"value", one.frame < 0 ? nlohmann::ordered_json(nullptr) : number_or_null(one.value)},
+                        {"value", one.frame < 0 ? Json(nullptr) : number_or_null(one.value)},
                         {"frame", one.frame}});
-  nlohmann::ordered_json json = {
+  Json json = {
       {"program_version", s.program_version},
       {"scene", s.scene},
       {"stepper", s.stepper},

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "physics/scene/features.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
 #include "pipeline/garments/worn_part.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/reports/field_total.hpp"
 #include "pipeline/scene/outcome.hpp"
 

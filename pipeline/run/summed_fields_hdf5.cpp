@@ -6,20 +6,12 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 
 namespace selvedge::h5 {
-namespace {
-
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
-}
-
-}  // namespace
-
-void SummedFields::add(const std::string& name, const std::string& bytes) {
-  sum = hash_of(fmt::format("{:016x} {} ", sum, name) + bytes);
+void SummedFields::add(const std::string& name, std::string_view bytes) {
+  sum = hash_of(bytes, hash_of(fmt::format("{:016x} {} ", sum, name)));
 }
 
 void SummedFieldsOut::numbers(const std::string& name, const std::vector<double>& values) {

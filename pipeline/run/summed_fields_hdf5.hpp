@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 namespace selvedge::h5 {
 
@@ -13,7 +13,7 @@ struct SummedFields {
   const File& file;
   std::uint64_t sum = 0;  // of the fields so far
 
-  void add(const std::string& name, const std::string& bytes);
+  void add(const std::string& name, std::string_view bytes);
 };
 
 struct SummedFieldsOut : SummedFields {

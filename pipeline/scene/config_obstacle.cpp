@@ -1,4 +1,3 @@
-#include "collision/untangle/give_way.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/scene/config_scene.hpp"

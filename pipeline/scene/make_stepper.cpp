@@ -8,7 +8,7 @@
 #include "learned/steppers/refu_stepper.hpp"
 #include "physics/scene/features.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/hdf5/neighbour_scale_hdf5.hpp"
 #include "pipeline/scene/network_warnings.hpp"
 
 namespace selvedge {

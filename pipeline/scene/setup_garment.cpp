@@ -4,16 +4,15 @@
 
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
-#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
+#include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/mesh_frame.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/garments/worn_part.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
-#include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge {
 namespace {

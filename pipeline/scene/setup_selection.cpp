@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "collision/geometry/lists.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -23,11 +25,6 @@ std::vector<int> in_box(const Config& box, const Points& x) {
   return found;
 }
 
-void sort_unique(std::vector<int>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
   std::vector<std::string> known;
   for (const auto& [name, vertices] : mesh.groups) known.push_back(name);
@@ -40,7 +37,7 @@ std::vector<int> in_groups(const Config& group, const Mesh& mesh) {
     const std::vector<int>& vertices = mesh.groups[static_cast<std::size_t>(match - known.begin())].second;
     found.insert(found.end(), vertices.begin(), vertices.end());
   }
-  sort_unique(found);
+  sort_once(found);
   return found;
 }
 
@@ -74,7 +71,7 @@ std::vector<int> read_vertices(const Config& section, const ClothPart& part) {
 
 std::vector<int> read_selection(const Config& section, const ClothPart& part) {
   std::vector<int> found = read_vertices(section, part);
-  sort_unique(found);
+  sort_once(found);
   return found;
 }
 

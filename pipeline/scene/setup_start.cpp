@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "physics/recovery/cut_out.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/scene/config_scene.hpp"
@@ -87,15 +88,14 @@ void apply_start(const Config& section, ClothPart& part, std::vector<std::string
   if (x.rows() == 0) return;
   const auto seed = static_cast<std::uint64_t>(section["seed"].number());
   const Vec3 stretch = section["stretch"].vector();
-  const auto extent_of = [&] { return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm(); };
-  const double before = extent_of();
+  const double before = box_diagonal(x);
   const double crumple = section["crumple"].number(), edge = mean_edge_length(part.rest_triangle);
   if (stretch != Vec3::Ones()) {
     const Eigen::RowVector3d middle = 0.5 * (x.colwise().minCoeff() + x.colwise().maxCoeff());
     x = ((x.rowwise() - middle) * stretch.asDiagonal()).rowwise() + middle;
   }
   if (crumple > 0) x += crumple * random_shifts(x.rows(), seed);
-  const double extent = extent_of();
+  const double extent = box_diagonal(x);
   if (!(extent <= most_start_stretch * std::max(before, edge)))
     section.fail(fmt::format("draws the cloth `{}` out from {:.3g} to {:.3g} m, and {:g} times is the most", part.name,
                              before, extent, most_start_stretch),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/counted.hpp"
 
 namespace selvedge {
@@ -81,7 +82,7 @@ void warn_of_pins_inside(const std::vector<ClothPart>& parts, const Scene& scene
 void warn_of_fast_pins(const std::vector<ClothPart>& parts, double fps, int frames,
                        std::vector<std::string>& warnings) {
   for (const ClothPart& part : parts) {
-    const double size = (part.rest.colwise().maxCoeff() - part.rest.colwise().minCoeff()).norm();
+    const double size = box_diagonal(part.rest);
     for (const PinPart& pin : part.pins) {
       if (!pin.keyed) continue;
       Points before = pin.at(0);

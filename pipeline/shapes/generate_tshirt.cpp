@@ -10,7 +10,7 @@ namespace selvedge {
 namespace {
 
 // The T on squared paper: columns from the left cuff to the right one, rows from the hem to the shoulders.
-struct Grid {
+struct PanelGrid {
   int sleeve, body, cuff, rows, neck;  // columns of a sleeve and of the body, rows of a sleeve and of all, neck columns
 
   int columns() const { return body + 2 * sleeve; }
@@ -30,19 +30,19 @@ struct Grid {
   }
 };
 
-Grid grid_of(const TshirtShape& shape) {
+PanelGrid grid_of(const TshirtShape& shape) {
   const auto squares = [&](double length, int least) {
     return std::max(least, static_cast<int>(std::lround(length / shape.edge)));
   };
-  Grid grid{squares(shape.sleeve_length, 1), squares(shape.width, 4), squares(shape.sleeve_width, 3),
-            squares(shape.length, 5), squares(shape.neck, 2)};
+  PanelGrid grid{squares(shape.sleeve_length, 1), squares(shape.width, 4), squares(shape.sleeve_width, 3),
+                 squares(shape.length, 5), squares(shape.neck, 2)};
   grid.cuff = std::min(grid.cuff, grid.rows - 1);
   grid.neck = std::min(grid.neck, grid.body - 2);
   return grid;
 }
 
 // Squares to the nearest seam.
-double seam_distance(const Grid& grid, int i, int j) {
+double seam_distance(const PanelGrid& grid, int i, int j) {
   double least = std::numeric_limits<double>::infinity();
   for (int p = 0; p <= grid.columns(); ++p)
     for (int q = 0; q <= grid.rows; ++q)
@@ -55,7 +55,7 @@ double seam_distance(const Grid& grid, int i, int j) {
 Mesh make_tshirt(const TshirtShape& shape) {
   assert(shape.edge > 0 && shape.depth > 0);
   constexpr double slope = 0.35;  // of front and back beside a seam
-  const Grid grid = grid_of(shape);
+  const PanelGrid grid = grid_of(shape);
   std::map<std::array<int, 3>, int> index;  // column, row and side of a corner; seams have side 0
   std::vector<Vec3> x;
   std::map<std::string, std::vector<int>> groups;

@@ -6,7 +6,7 @@
 namespace selvedge {
 namespace {
 
-constexpr double opposite = 1e-12;  // directions whose cosine is nearer to -1 have no defined axis
+constexpr double nearly_opposite = 1e-12;  // directions whose cosine is nearer to -1 have no defined axis
 
 // A unit vector perpendicular to both, which may be parallel.
 Vec3 perpendicular(const Vec3& a, const Vec3& b) {
@@ -83,7 +83,7 @@ Mat3 rotation_between(const Vec3& a, const Vec3& b) {
   const Vec3 from = a.normalized(), to = b.normalized();
   const double cosine = std::max(to.dot(from), -1.0);
   Eigen::Quaterniond turn;
-  if (cosine < -1 + opposite) {
+  if (cosine < -1 + nearly_opposite) {
     const double half = (1 + cosine) / 2;  // the square of the cosine of half the angle
     turn.w() = std::sqrt(half);
     turn.vec() = std::sqrt(1 - half) * perpendicular(from, to);

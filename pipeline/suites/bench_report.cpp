@@ -66,21 +66,20 @@ std::string rounded_number(double value, int digits) {
   return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits);
 }
 
-nlohmann::ordered_json detection_json(const std::vector<DetectionTiming>& timings) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json detection_json(const std::vector<DetectionTiming>& timings) {
+  Json list = Json::array();
   for (const DetectionTiming& t : timings) {
-    nlohmann::ordered_json entry = {
-        {"shape", t.shape}, {"triangles", t.triangles}, {"pairs", t.pairs}, {"ms", 1e3 * t.ours}};
-    entry["fcl_ms"] = t.fcl ? nlohmann::ordered_json(1e3 * *t.fcl) : nlohmann::ordered_json(nullptr);
+    Json entry = {{"shape", t.shape}, {"triangles", t.triangles}, {"pairs", t.pairs}, {"ms", 1e3 * t.ours}};
+    entry["fcl_ms"] = t.fcl ? Json(1e3 * *t.fcl) : Json(nullptr);
     if (t.fcl) entry["pairs_found_by_one_alone"] = t.other_pairs;
     list.push_back(entry);
   }
   return list;
 }
 
-nlohmann::ordered_json engine_json(const EngineTimings& timings) {
+Json engine_json(const EngineTimings& timings) {
   const PeakMeasurement& peak = timings.peak;
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  Json rows = Json::array();
   for (const EngineTiming& row : timings.rows)
     rows.push_back({{"network", row.network},
                     {"width", row.width},
@@ -105,16 +104,16 @@ nlohmann::ordered_json engine_json(const EngineTimings& timings) {
           {"rows", rows}};
 }
 
-nlohmann::ordered_json training_json(const std::vector<TrainingTiming>& timings) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json training_json(const std::vector<TrainingTiming>& timings) {
+  Json list = Json::array();
   for (const TrainingTiming& t : timings) {
-    nlohmann::ordered_json row = {{"network", t.network},
-                                  {"nodes", t.nodes},
-                                  {"edges", t.edges},
-                                  {"threads", t.threads},
-                                  {"forward_ms", 1e3 * t.forward.wall},
-                                  {"step_ms", 1e3 * t.fused.wall},
-                                  {"busy_step_ms", 1e3 * t.fused.busy}};
+    Json row = {{"network", t.network},
+                {"nodes", t.nodes},
+                {"edges", t.edges},
+                {"threads", t.threads},
+                {"forward_ms", 1e3 * t.forward.wall},
+                {"step_ms", 1e3 * t.fused.wall},
+                {"busy_step_ms", 1e3 * t.fused.busy}};
     if (t.with_torch) {
       row["libtorch_step_ms"] = 1e3 * t.torch.wall;
       row["libtorch_busy_step_ms"] = 1e3 * t.torch.busy;
@@ -130,9 +129,9 @@ nlohmann::ordered_json training_json(const std::vector<TrainingTiming>& timings)
 }  // namespace
 
 std::string bench_json(const BenchResult& result) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   for (const BenchMember& member : result.members) {
-    nlohmann::ordered_json entry = {{"scene", member.scene}, {"size", member.size}};
+    Json entry = {{"scene", member.scene}, {"size", member.size}};
     for (const Column& column : columns()) {
       const double value = column.value(member);
       if (std::isnan(value))
@@ -143,11 +142,10 @@ std::string bench_json(const BenchResult& result) {
         entry[column.name] = value;
     }
     if (member.algebraic) entry["algebraic_reference_converged"] = member.algebraic->reference_converged;
-    entry["run"] = nlohmann::ordered_json::parse(summary_json(member.summary));
+    entry["run"] = parse_json(summary_json(member.summary));
     list.push_back(entry);
   }
-  nlohmann::ordered_json json = {{"program_version", program_version()},
-                                 {"detection", detection_json(result.detection)}};
+  Json json = {{"program_version", program_version()}, {"detection", detection_json(result.detection)}};
   if (result.engine) json["engine"] = engine_json(*result.engine);
   if (!result.training.empty()) json["training"] = training_json(result.training);
   json["members"] = list;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "physics/scene/features.hpp"
 #include "pipeline/scene/setup.hpp"
 
@@ -62,9 +63,7 @@ void StabilityWatch::operator()(const FrameEvent& event) {
 StabilityMeasures StabilityWatch::measures() const {
   constexpr double earth = 9.81;  // where nothing falls [m/s2]
   const double gravity = setup_.drive_at(0).acceleration.norm();
-  const Points& rest = setup_.scene.rest;
-  const double extent = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
-  const double fall = std::sqrt(2 * (gravity > 0 ? gravity : earth) * extent);
+  const double fall = std::sqrt(2 * (gravity > 0 ? gravity : earth) * box_diagonal(setup_.scene.rest));
   StabilityMeasures found = found_;
   found.end_speed = end_frames_ > 0 ? std::sqrt(end_sum_ / end_frames_) / fall : 0;
   return found;

@@ -11,8 +11,6 @@
 namespace selvedge {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // The fields of a row in its JSON.
 constexpr auto stress_fields = [](auto& r, const auto& visit) {
   visit("scene", r.scene);

@@ -9,7 +9,7 @@
 #include "physics/steppers/carried_stepper.hpp"
 #include "pipeline/cells/scene_cells.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/progress.hpp"

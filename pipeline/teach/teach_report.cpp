@@ -7,8 +7,6 @@
 namespace selvedge {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr double mm = 1e3;  // [mm/m]
 
 std::string rolls_text(const std::string& name, const RollDistances& rolls) {
@@ -21,7 +19,7 @@ std::string rolls_title(const std::string& first) {
                      "refused");
 }
 
-ordered_json rolls_object(const RollDistances& rolls) {
+Json rolls_object(const RollDistances& rolls) {
   return {{"after_1_mm", mm * rolls.distance_after_one()},
           {"after_10_mm", mm * rolls.distance_after_ten()},
           {"frames", rolls.frames},
@@ -61,19 +59,19 @@ std::string teach_text(const TeachReport& report) {
 }
 
 std::string teach_json(const TeachReport& report) {
-  ordered_json json{{"finished", report.finished}, {"clips", report.taught.clips}, {"kept_round", report.chosen}};
-  ordered_json coefficients = ordered_json::object();
+  Json json{{"finished", report.finished}, {"clips", report.taught.clips}, {"kept_round", report.chosen}};
+  Json coefficients = Json::object();
   for (int k = 0; k < carried_term_count; ++k)
     coefficients[carried_term_names()[static_cast<std::size_t>(k)]] = report.taught.model.scene[k];
   json["coefficients"] = coefficients;
   json["own_sets"] = report.taught.model.own.rows();
   json["rounds"] = json_list(report.rounds, [](const TeachRound& round) {
-    ordered_json one{{"frames", round.frames}, {"carried_mm", mm * round.before}, {"fitted_mm", mm * round.after}};
+    Json one{{"frames", round.frames}, {"carried_mm", mm * round.before}, {"fitted_mm", mm * round.after}};
     one["rolls"] = rolls_object(round.rolls);
     return one;
   });
   json["held_out"] = json_list(report.rows, [](const TeachRow& row) {
-    ordered_json one = rolls_object(row.rolls);
+    Json one = rolls_object(row.rolls);
     one["stepper"] = row.stepper;
     return one;
   });

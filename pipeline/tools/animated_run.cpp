@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "pipeline/config/config.hpp"
@@ -17,7 +18,7 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
 #include "pipeline/formats/polygon.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 
 namespace selvedge {
 namespace {
@@ -199,7 +200,7 @@ class RunSurfaces {
     for (const int c : drivers)
       for (const int v : rows_of(c)) rows.push_back(v);
     const Points rest = info().rest(rows, Eigen::all);
-    const double size = rest.rows() == 0 ? 0 : (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+    const double size = box_diagonal(rest);
     ClothSource& cloth = sources_.emplace_back();
     cloth.surface.name = request_.onto.stem().string();
     cloth.surface.colour = colour_of(drivers.empty() ? 0 : drivers[0]);

@@ -13,7 +13,7 @@
 #include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/tools/check_measures.hpp"
 

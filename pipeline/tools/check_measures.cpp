@@ -6,7 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "physics/energies/measures.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/measures/published_measures.hpp"
 #include "pipeline/measures/run_measures.hpp"
 

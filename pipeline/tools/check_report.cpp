@@ -11,8 +11,8 @@
 namespace selvedge {
 namespace {
 
-nlohmann::ordered_json opinion_json(const Opinion& opinion) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json opinion_json(const Opinion& opinion) {
+  Json list = Json::array();
   for (const Disagreement& d : opinion.disagreements)
     list.push_back({{"frame", d.frame},
                     {"triangle", d.first},
@@ -27,7 +27,7 @@ nlohmann::ordered_json opinion_json(const Opinion& opinion) {
           {"disagreements", list}};
 }
 
-nlohmann::ordered_json volume_json(const VolumeFindings& findings) {
+Json volume_json(const VolumeFindings& findings) {
   return {{"mean_net_loss", findings.mean_net_loss()},
           {"mean_loss", findings.mean_loss()},
           {"loss_of_fans", findings.of_fans},
@@ -47,25 +47,25 @@ nlohmann::ordered_json volume_json(const VolumeFindings& findings) {
 }  // namespace
 
 std::string check_json(const CheckReport& r) {
-  nlohmann::ordered_json json = {{"kind", r.trajectory ? "trajectory" : "mesh"},
-                                 {"clean", is_clean(r)},
-                                 {"closed", r.closed},
-                                 {"frames", r.frames()},
-                                 {"vertices", r.vertices},
-                                 {"triangles", r.triangles},
-                                 {"bodies", r.bodies},
-                                 {"intersecting_pairs", r.worst_pairs},
-                                 {"worst_frame", r.worst_frame},
-                                 {"intersecting_pairs_by_frame", r.pairs_by_frame},
-                                 {"vertex_sharing_pairs", r.worst_vertex_pairs},
-                                 {"vertex_sharing_pairs_by_frame", r.vertex_pairs_by_frame},
-                                 {"min_gap", number_or_null(r.min_gap)},
-                                 {"max_stretch", number_or_null(r.max_stretch)},
-                                 {"min_stretch", number_or_null(r.min_stretch)},
-                                 {"nonfinite", r.nonfinite},
-                                 {"degenerate_triangles", r.degenerate_triangles},
-                                 {"inside_vertices", r.inside_vertices},
-                                 {"warnings", r.warnings}};
+  Json json = {{"kind", r.trajectory ? "trajectory" : "mesh"},
+               {"clean", is_clean(r)},
+               {"closed", r.closed},
+               {"frames", r.frames()},
+               {"vertices", r.vertices},
+               {"triangles", r.triangles},
+               {"bodies", r.bodies},
+               {"intersecting_pairs", r.worst_pairs},
+               {"worst_frame", r.worst_frame},
+               {"intersecting_pairs_by_frame", r.pairs_by_frame},
+               {"vertex_sharing_pairs", r.worst_vertex_pairs},
+               {"vertex_sharing_pairs_by_frame", r.vertex_pairs_by_frame},
+               {"min_gap", number_or_null(r.min_gap)},
+               {"max_stretch", number_or_null(r.max_stretch)},
+               {"min_stretch", number_or_null(r.min_stretch)},
+               {"nonfinite", r.nonfinite},
+               {"degenerate_triangles", r.degenerate_triangles},
+               {"inside_vertices", r.inside_vertices},
+               {"warnings", r.warnings}};
   if (r.fcl) json["fcl"] = opinion_json(*r.fcl);
   if (r.volume) json["volume"] = volume_json(*r.volume);
   for (const auto& [name, value] : r.measures) json["measures"][name] = number_or_null(value);

@@ -7,7 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/penetration/penetration_loss.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 
 namespace selvedge {
 

@@ -15,7 +15,7 @@
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/motions/rig_gltf.hpp"
@@ -98,17 +98,17 @@ BodyReport convert_body(const BodyRequest& request) {
 }
 
 std::string body_json(const BodyReport& r) {
-  nlohmann::ordered_json own = nlohmann::ordered_json::array();
+  Json own = Json::array();
   for (const OwnCrossings::Between& one : r.crossings.between)
     own.push_back({{"mesh", one.a}, {"with", one.b}, {"pairs", one.pairs}});
-  const nlohmann::ordered_json json = {{"body", r.out.string()},     {"vertices", r.vertices},
-                                       {"triangles", r.triangles},   {"closed", r.closed},
-                                       {"joints", r.joints},         {"shapes", r.shapes},
-                                       {"height", r.height},         {"arms_off", r.arms_off},
-                                       {"t_pose", r.t_pose},         {"lacks", r.lacks},
-                                       {"animations", r.animations}, {"meshes", r.meshes},
-                                       {"own_pairs", own},           {"own_pairs_counted", !r.crossings.too_many},
-                                       {"warnings", r.warnings}};
+  const Json json = {{"body", r.out.string()},     {"vertices", r.vertices},
+                     {"triangles", r.triangles},   {"closed", r.closed},
+                     {"joints", r.joints},         {"shapes", r.shapes},
+                     {"height", r.height},         {"arms_off", r.arms_off},
+                     {"t_pose", r.t_pose},         {"lacks", r.lacks},
+                     {"animations", r.animations}, {"meshes", r.meshes},
+                     {"own_pairs", own},           {"own_pairs_counted", !r.crossings.too_many},
+                     {"warnings", r.warnings}};
   return json_text(json);
 }
 

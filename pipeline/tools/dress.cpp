@@ -10,7 +10,6 @@
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
 #include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
@@ -18,6 +17,7 @@
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/worn_part.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/scene/config_scene.hpp"
 

@@ -15,7 +15,7 @@ std::string vertices_text(std::ptrdiff_t n) { return counted(n, "vertex", "verti
 
 std::string dress_json(const DressReport& report) {
   const Garment& garment = report.garment;
-  nlohmann::ordered_json groups = nlohmann::ordered_json::object();
+  Json groups = Json::object();
   for (const auto& [name, vertices] : garment.groups) groups[name] = vertices.size();
   return json_text({{"clean", is_clean(report)},
                     {"name", garment.name},

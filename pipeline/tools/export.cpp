@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/tools/animated_run.hpp"
 
 namespace selvedge {

@@ -180,7 +180,6 @@ std::string fit_text(const FitReport& report) {
 }
 
 std::string fit_json(const FitReport& report) {
-  using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (const FitRow& row : report.measures.rows)
     rows.push_back({{"region", row.region},

@@ -63,7 +63,7 @@ std::vector<std::pair<std::string, std::string>> facts() {
 }  // namespace
 
 std::string info_json() {
-  nlohmann::ordered_json json;
+  Json json;
   for (const auto& [name, value] : facts()) json[name] = value;
   json["threads"] = most_threads();
   return json_text(json);

@@ -14,14 +14,14 @@ constexpr double degrees = 180 / 3.14159265358979323846;
 }  // namespace
 
 std::string pattern_json(const PatternReport& report) {
-  nlohmann::ordered_json json = {{"panels", report.panels},
-                                 {"seams", report.seams},
-                                 {"stitches", report.stitches},
-                                 {"area", report.area},
-                                 {"least_angle", degrees * report.least_angle}};
+  Json json = {{"panels", report.panels},
+               {"seams", report.seams},
+               {"stitches", report.stitches},
+               {"area", report.area},
+               {"least_angle", degrees * report.least_angle}};
   const SewnPattern& sewn = report.sewn;
   if (sewn.x.rows() > 0) {
-    nlohmann::ordered_json groups = nlohmann::ordered_json::object();
+    Json groups = Json::object();
     for (const auto& [name, vertices] : report.garment.groups) groups[name] = vertices.size();
     json.update({{"clean", is_clean(report)},
                  {"name", report.garment.name},

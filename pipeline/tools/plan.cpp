@@ -103,7 +103,7 @@ void append_tissue_lines(const Setup& setup, std::vector<PlanLine>& lines) {
     const std::string& name = setup.scene.obstacles[k].name;
     if (body.room > 0)
       lines.push_back({"soft tissue", true,
-                       fmt::format("the parts of `{}` leave {:.3g} mm for cloth, {:.2g} ms a pose here; its `room: 0` "
+                       fmt::format("the parts of `{}` leave {:.3g} mm for cloth, {:.0f} ms a pose here; its `room: 0` "
                                    "leaves this out",
                                    name, 1000 * body.room, 1000 * body.seconds / std::max(1, body.poses))});
     else
@@ -137,7 +137,7 @@ std::vector<PlanLine> lines_of(const Setup& setup) {
 }  // namespace
 
 std::string plan_json(const Setup& setup) {
-  nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+  Json lines = Json::array();
   for (const PlanLine& line : lines_of(setup))
     lines.push_back({{"feature", line.feature}, {"in", line.in}, {"why", line.why}});
   return json_text({{"scene", setup.file.string()},

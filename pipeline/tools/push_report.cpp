@@ -7,7 +7,7 @@
 namespace selvedge {
 namespace {
 
-nlohmann::ordered_json errors_as_json(const GarmentErrors& errors) {
+Json errors_as_json(const GarmentErrors& errors) {
   return {{"mpve_mm", number_or_null(errors.vertex_error)},
           {"vfcp_percent", errors.vertices_inside},
           {"collision_free", errors.collision_free},

@@ -9,7 +9,7 @@ namespace selvedge {
 
 std::string untangle_json(const UntangleReport& report) {
   const UntangleResult& r = report.result;
-  nlohmann::ordered_json left = nlohmann::ordered_json::array();
+  Json left = Json::array();
   for (const Remainder& one : r.left)
     left.push_back({{"pairs", one.pairs}, {"length", one.length}, {"reason", one.reason}});
   return json_text({{"clean", is_clean(report)},

@@ -1,43 +1,48 @@
 #include <algorithm>
 
 #include "collision/geometry/welded_surface.hpp"
-#include "pipeline/training/soft_tissue_hdf5.hpp"
+#include "pipeline/obstacles/setup_body.hpp"
+#include "pipeline/training/training_world.hpp"
 
 namespace selvedge {
 namespace {
 
-std::size_t bytes_of(const TissueDisplacements& tissue) {
-  return tissue.vertices.size() * (sizeof(int) + 3 * sizeof(float)) + sizeof(TissueDisplacements);
+constexpr double least_move = 1e-7;  // of a vertex that soft tissue moves [m]
+
+std::size_t memory_of(const TissueStore& store) {
+  return store.numbers * sizeof(double) + store.numbers / 3 * sizeof(int) +
+         store.poses.size() * sizeof(TissueStore::Pose);
 }
 
-// Writes frames to the folder and frees their memory.
+// Writes soft tissue to the cache and frees its memory.
 void forget_tissue(TrainingWorld& world) {
-  write_soft_tissue(world.soft_tissue_folder, world);
+  write_soft_tissue(world);
   for (TrainingBody& body : world.bodies)
-    for (TrainingClip& clip : body.clips) {
-      clip.given.clear();
-      clip.looked = false;
-    }
+    for (TrainingClip& clip : body.clips) clip.tissue.reset();
   world.tissue_bytes = 0;
 }
 
-const TissueDisplacements& tissue_displacements(TrainingWorld& world, TrainingBody& body, int clip, int frame,
-                                                const Points& skinned) {
+// How soft tissue moves a pose of the clip [m], in the precision of networks.
+Points tissue_moves(TrainingWorld& world, const TrainingBody& body, TrainingClip& clip, const Points& skinned) {
   if (world.tissue_bytes > world.most_tissue) forget_tissue(world);
-  TrainingClip& of = body.clips[static_cast<std::size_t>(clip)];
-  if (!of.looked) {
-    of.given.merge(read_soft_tissue(world.soft_tissue_folder, world, body, of));
-    of.looked = true;
-    for (const auto& [_, known] : of.given) world.tissue_bytes += bytes_of(known);
+  if (!clip.tissue) {
+    const TrainingPerson& person = world.people[static_cast<std::size_t>(body.person)];
+    clip.tissue = read_tissue_store(
+        world.cache, hash_of_performance(person.surface, person.body.skin, body.shape, clip.motion, body.room));
+    world.tissue_bytes += memory_of(*clip.tissue);
   }
-  if (const auto found = of.given.find(frame); found != of.given.end()) return found->second;
-  const Points moves = (*body.soft_tissue)(skinned)-skinned;
-  TissueDisplacements kept;
-  for (int v = 0; v < moves.rows(); ++v)
-    if (moves.row(v).cwiseAbs().maxCoeff() > 1e-7) kept.vertices.push_back(v);
-  kept.displacements = moves(kept.vertices, Eigen::all).cast<float>();
-  world.tissue_bytes += bytes_of(kept);
-  return of.given.emplace(frame, std::move(kept)).first->second;
+  std::optional<Points> given = known_tissue(*clip.tissue, skinned);
+  if (!given) {
+    given = (*body.soft_tissue)(skinned);
+    world.tissue_bytes -= memory_of(*clip.tissue);
+    keep_tissue(skinned, *given, *clip.tissue);
+    world.tissue_bytes += memory_of(*clip.tissue);
+  }
+  const Points exact = *given - skinned;
+  Points moves = exact.cast<float>().cast<double>();
+  for (Eigen::Index v = 0; v < moves.rows(); ++v)
+    if (!(exact.row(v).cwiseAbs().maxCoeff() > least_move)) moves.row(v).setZero();
+  return moves;
 }
 
 }  // namespace
@@ -53,9 +58,7 @@ SkinnedFrame skinned_frame(TrainingWorld& world, int wear, int body, int clip, i
   Points skinned = posed(person.body.skin, who.shape, pose, transforms);
   Points moves;
   if (who.soft_tissue) {
-    const TissueDisplacements& given = tissue_displacements(world, who, clip, k, skinned);
-    moves = Points::Zero(skinned.rows(), 3);
-    moves(given.vertices, Eigen::all) = given.displacements.cast<double>();
+    moves = tissue_moves(world, who, who.clips[static_cast<std::size_t>(clip)], skinned);
     skinned += moves;
   }
   hold_together(person.joined, skinned);
@@ -73,6 +76,12 @@ SkinnedFrame skinned_frame(TrainingWorld& world, int wear, int body, int clip, i
     rows += x.rows();
   }
   return result;
+}
+
+void write_soft_tissue(TrainingWorld& world, std::uintmax_t most) {
+  for (TrainingBody& body : world.bodies)
+    for (TrainingClip& clip : body.clips)
+      if (clip.tissue) write_tissue_store(*clip.tissue, most);
 }
 
 }  // namespace selvedge

@@ -16,7 +16,6 @@
 #include "pipeline/processes/learning_sums.hpp"
 #include "pipeline/processes/together.hpp"
 #include "pipeline/run/progress.hpp"
-#include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "pipeline/training/training_tables.hpp"
 
@@ -83,9 +82,8 @@ void write_tables(const TrainingRun& run) {
 
 void save(TrainingRun& run) {
   run.history.seconds = run.seconds();
-  const TrainingWorld& world = run.trainer->maker->world;
   if (run.leads()) {
-    run.trainer->queue->locked([&] { write_soft_tissue(world.soft_tissue_folder, world); });
+    run.trainer->queue->locked([&] { write_soft_tissue(run.trainer->maker->world); });
     write_weights(run, "weights.h5");
     write_tables(run);
   }
@@ -336,21 +334,21 @@ std::string train_text(const TrainSummary& s) {
 
 std::string train_json(const TrainSummary& s) {
   const RollMeasure& r = s.last.roll;
-  const nlohmann::ordered_json json = {{"folder", s.folder.string()},
-                                       {"finished", s.finished},
-                                       {"steps", s.counts.step},
-                                       {"frames", s.counts.frames},
-                                       {"bad_samples", s.counts.bad},
-                                       {"lost_rolls", s.counts.lost},
-                                       {"seconds", s.seconds},
-                                       {"best_step", s.best_step},
-                                       {"best_score", s.best_score},
-                                       {"score_unit", s.score_unit},
-                                       {"worn_closed", s.last.skinned.closed},
-                                       {"minimised_closed", s.last.minimised.closed},
-                                       {"strain", r.strain},
-                                       {"strain_99", r.strain_99},
-                                       {"pairs_at_end", r.pairs_at_end}};
+  const Json json = {{"folder", s.folder.string()},
+                     {"finished", s.finished},
+                     {"steps", s.counts.step},
+                     {"frames", s.counts.frames},
+                     {"bad_samples", s.counts.bad},
+                     {"lost_rolls", s.counts.lost},
+                     {"seconds", s.seconds},
+                     {"best_step", s.best_step},
+                     {"best_score", s.best_score},
+                     {"score_unit", s.score_unit},
+                     {"worn_closed", s.last.skinned.closed},
+                     {"minimised_closed", s.last.minimised.closed},
+                     {"strain", r.strain},
+                     {"strain_99", r.strain_99},
+                     {"pairs_at_end", r.pairs_at_end}};
   return json_text(json);
 }
 

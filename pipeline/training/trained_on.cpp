@@ -4,16 +4,14 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/library_message.hpp"
 
 namespace selvedge {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Hashes of names in configurations: of the bytes of a file, or of any other name itself.
 struct Contents {
@@ -130,12 +128,12 @@ std::string trained_on_json(const TrainedOn& on) {
                       {"wear", items_json(person.wear)},
                       {"clips", items_json(person.clips)}});
   const Json record{{"people", people}, {"whole", on.whole}};
-  return record.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_line(record);
 }
 
 TrainedOn read_trained_on(const std::string& json, const std::string& where) {
   try {
-    const Json record = Json::parse(json);
+    const Json record = parse_json(json);
     TrainedOn on;
     on.whole = record.at("whole").get<bool>();
     for (const Json& person : record.at("people"))

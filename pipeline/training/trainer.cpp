@@ -196,7 +196,7 @@ std::unique_ptr<Trainer> make_empty_trainer(const TrainingOptions& options, Proc
   trainer->pool.resize(static_cast<std::size_t>(options.pool.states));
   trainer->maker = std::make_unique<RollMaker>(
       RollMaker{options, trainer->architecture.features, make_training_world(options.samples, options.seed), {}});
-  trainer->maker->world.soft_tissue_folder = cache_folder();
+  trainer->maker->world.cache = cache_folder();
   trainer->inputs.files = files_of(options.samples.people, options.samples.folder);
   trainer->inputs.scene = world_hash(trainer->maker->world);
   if (processes) check_same_training(*trainer);

@@ -7,7 +7,7 @@
 #include "learned/gradients/adam.hpp"
 #include "learned/gradients/torch_network.hpp"
 #include "learned/gradients/training_network.hpp"
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/processes/processes.hpp"
 #include "pipeline/training/roll_queue.hpp"
 #include "pipeline/training/rolling_state.hpp"

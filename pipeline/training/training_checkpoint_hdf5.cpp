@@ -8,8 +8,7 @@
 
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
-#include "pipeline/host/kept_rows.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/processes/together.hpp"
 #include "pipeline/run/resume.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/config/options.hpp"
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 
 namespace selvedge {
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <span>
 
 #include "learned/steppers/learned_state.hpp"
 #include "pipeline/garments/garment_make.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/scene/config_scene.hpp"
@@ -117,13 +117,6 @@ void check_garments_take(const Config& section, const TrainingWorld& world, cons
                      "make the garment anew for this body with `selvedge dress`, or give a shorter `shape`");
 }
 
-// A hash of the inputs of soft tissue beside shape, layers and poses. 0: the mannequin with the usual room.
-std::uint64_t tissue_key(const Config& section, const TrainingPerson& person) {
-  const std::vector<double>& room = section["room"].numbers;
-  if (person.body.name.starts_with("mannequin") && room.empty()) return 0;
-  return hash_of(fmt::format("{}", fmt::join(room, " ")), person.hash);
-}
-
 // The person's body of this shape: one from `first` on, or a new one.
 TrainingBody& body_of(const SampleOptions& options, const Config& section, const Eigen::VectorXd& shape,
                       std::size_t first, Performance& who, TrainingWorld& world) {
@@ -136,11 +129,11 @@ TrainingBody& body_of(const SampleOptions& options, const Config& section, const
   body.joints = joint_positions(person.body, shape);
   body.person = static_cast<int>(world.people.size()) - 1;
   body.weight = 0;
-  body.tissue_key = tissue_key(section, person);
   if (options.soft_tissue) {
     perform(section, options.folder, who);
     wear(layer_count(world, person), who);
     body.soft_tissue = who.soft_tissue;
+    body.room = who.known->room;
   }
   person.bodies.push_back(static_cast<int>(world.bodies.size()));
   return world.bodies.emplace_back(std::move(body));
@@ -173,16 +166,13 @@ void add_shape(const SampleOptions& options, std::uint64_t seed, int index, cons
 
 std::uint64_t hash_of_body(const BodyModel& body) {
   std::uint64_t hash = hash_of(body.name);
-  const auto add = [&](const void* data, std::size_t bytes) {
-    hash = hash_of({static_cast<const char*>(data), bytes}, hash);
-  };
-  const SkinnedSurface& skin = body.skin;
-  add(skin.rest.data(), sizeof(double) * static_cast<std::size_t>(skin.rest.size()));
-  add(skin.triangles.data(), sizeof(int) * static_cast<std::size_t>(skin.triangles.size()));
-  add(skin.shape_directions.data(), sizeof(double) * static_cast<std::size_t>(skin.shape_directions.size()));
-  add(skin.pose_directions.data(), sizeof(double) * static_cast<std::size_t>(skin.pose_directions.size()));
-  for (const SkinWeights* matrix : {&skin.weights, &body.regressor})
-    add(matrix->valuePtr(), sizeof(double) * static_cast<std::size_t>(matrix->nonZeros()));
+  const auto add = [&](const auto& numbers) { hash = hash_of(bytes_of(numbers), hash); };
+  add(body.skin.rest);
+  add(body.skin.triangles);
+  add(body.skin.shape_directions);
+  add(body.skin.pose_directions);
+  for (const SkinWeights* matrix : {&body.skin.weights, &body.regressor})
+    add(std::span(matrix->valuePtr(), static_cast<std::size_t>(matrix->nonZeros())));
   return hash;
 }
 

@@ -2,15 +2,16 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "collision/untangle/give_way.hpp"
-#include "pipeline/formats/trajectory.hpp"
 #include "pipeline/garments/garment.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 #include "pipeline/motions/clip.hpp"
+#include "pipeline/obstacles/tissue_store_hdf5.hpp"
 #include "pipeline/training/training_options.hpp"
 
 namespace selvedge {
@@ -24,19 +25,12 @@ struct TrainingWear {
   double weight = 1;              // weight in the draw among the person's
 };
 
-// Displacements of the soft tissue in a pose, without vertices that do not move.
-struct TissueDisplacements {
-  std::vector<int> vertices;
-  PointsF displacements;  // [m]
-};
-
-// A clip with 30 poses per second. Frames of soft tissue are computed at the first request.
+// A clip with 30 poses per second. Soft tissue is read, and what is new computed, at the first request.
 struct TrainingClip {
   std::string name;
   Clip motion;  // for its body's joints
   double weight = 1;
-  std::map<int, TissueDisplacements> given = {};
-  bool looked = false;  // whether the folder was searched for frames
+  std::optional<TissueStore> tissue = {};
 };
 
 // A person's body of one shape, with its clips.
@@ -45,7 +39,7 @@ struct TrainingBody {
   Points joints;
   std::shared_ptr<const GiveWay> soft_tissue;  // null: the body may intersect itself
   std::vector<TrainingClip> clips;
-  std::uint64_t tissue_key = 0;  // hash of the inputs of soft tissue beside shape, layers and poses
+  double room = 0;  // that soft tissue leaves between the body's parts [m]
   int person = 0;
   double weight = 1;
 };
@@ -66,10 +60,10 @@ struct TrainingWorld {
   std::vector<TrainingPerson> people;
   std::vector<TrainingWear> wear;
   std::vector<TrainingBody> bodies;
-  std::filesystem::path soft_tissue_folder;  // folder in which frames of soft tissue are kept; empty: they are not
-  std::size_t tissue_bytes = 0;              // of frames of soft tissue in memory,
-  std::size_t most_tissue = 512u << 20;      // and how many there may be
-  std::vector<std::string> warnings;         // of files
+  std::filesystem::path cache;           // the folder in which soft tissue is kept; empty: it is not
+  std::size_t tissue_bytes = 0;          // of soft tissue in memory,
+  std::size_t most_tissue = 512u << 20;  // and how many there may be
+  std::vector<std::string> warnings;     // of files
 };
 
 // The people of the options, with garments and clips for training: the mannequin with garments by code and procedural
@@ -95,5 +89,8 @@ struct SkinnedFrame {
   PointsF body, cloth;
 };
 SkinnedFrame skinned_frame(TrainingWorld&, int wear, int body, int clip, int frame);
+
+// Writes what was computed of soft tissue to the cache, in which at most so many bytes of it stay.
+void write_soft_tissue(TrainingWorld&, std::uintmax_t most = most_kept_tissue);
 
 }  // namespace selvedge

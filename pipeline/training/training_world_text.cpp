@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/training/training_world.hpp"
 
 namespace selvedge {
 namespace {
 
-template <class Matrix>
-void add_matrix(const Matrix& values, std::uint64_t& hash) {
-  const auto bytes = sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(values.size());
-  hash = hash_of({reinterpret_cast<const char*>(values.data()), bytes}, hash_of(fmt::format("{} ", bytes), hash));
+template <class Numbers>
+void add_matrix(const Numbers& values, std::uint64_t& hash) {
+  const std::string_view bytes = bytes_of(values);
+  hash = hash_of(bytes, hash_of(fmt::format("{} ", bytes.size()), hash));
 }
 
 // "2 clips in validation, 1 in test"; empty: nothing is held out.
@@ -42,7 +43,7 @@ std::uint64_t world_hash(const TrainingWorld& world) {
     for (const Garment& garment : wear.garments) {
       add_matrix(garment.skin.rest, hash);
       add_matrix(garment.skin.triangles, hash);
-      add_matrix(Eigen::Map<const Eigen::VectorXi>(garment.pins.data(), std::ssize(garment.pins)), hash);
+      add_matrix(garment.pins, hash);
     }
   for (const TrainingBody& body : world.bodies) {
     add_matrix(body.shape, hash);

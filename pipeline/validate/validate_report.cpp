@@ -69,7 +69,6 @@ std::string validate_csv(const std::vector<ValidationRow>& rows) {
 }
 
 std::string validate_json(const std::vector<ValidationRow>& rows) {
-  using Json = nlohmann::ordered_json;
   Json list = Json::array();
   for (const ValidationRow& row : rows)
     list.push_back({{"case", row.name},

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 
 namespace selvedge {
 

@@ -8,7 +8,8 @@
 #include <span>
 
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/hdf5/trajectory_row.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/view/packed_positions.hpp"
 
@@ -17,11 +18,6 @@ namespace {
 
 using nlohmann::json;
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian arrays");
-
-template <class T>
-std::string_view bytes_of(std::span<const T> values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
-}
 
 // Arrays in base64, which has no character with a meaning in HTML. Equal ones, such as a body's in several runs, stand
 // in the page once.
@@ -34,9 +30,6 @@ struct Arrays {
     const auto [at, is_new] = known.try_emplace(std::move(text), "array" + std::to_string(known.size()));
     if (is_new) html += "<script type=\"text/plain\" id=\"" + at->second + "\">" + at->first + "</script>\n";
     return at->second;
-  }
-  std::string add(const Triangles& triangles) {
-    return add(bytes_of(std::span<const int>(triangles.data(), triangles.size())));
   }
 };
 
@@ -84,9 +77,8 @@ json pressure_map(Arrays& arrays, const std::vector<Eigen::VectorXd>& pressures)
       levels.push_back(std::isfinite(value)
                            ? static_cast<std::uint8_t>(std::lround(254 * std::clamp(value / top, 0.0, 1.0)))
                            : std::uint8_t{255});
-  return {{"name", "pressure"}, {"unit", "Pa"},
-          {"low", 0},           {"high", top},
-          {"changes", true},    {"values", arrays.add(bytes_of(std::span<const std::uint8_t>(levels)))}};
+  return {{"name", "pressure"}, {"unit", "Pa"},    {"low", 0},
+          {"high", top},        {"changes", true}, {"values", arrays.add(bytes_of(levels))}};
 }
 
 json append_maps(Arrays& arrays, const ViewRun& run, const std::vector<Eigen::VectorXd>& pressures) {
@@ -97,7 +89,7 @@ json append_maps(Arrays& arrays, const ViewRun& run, const std::vector<Eigen::Ve
                     {"low", map.low},
                     {"high", map.high},
                     {"changes", false},
-                    {"values", arrays.add(bytes_of(std::span<const float>(map.values)))}});
+                    {"values", arrays.add(bytes_of(map.values))}});
   if (!pressures.empty()) maps.push_back(pressure_map(arrays, pressures));
   return maps;
 }
@@ -163,8 +155,8 @@ json append_run(Arrays& arrays, const ViewRun& run, std::size_t limit) {
   for (int index = 0; index < run.frame_count; ++index) series.append(run.frame(index));
   const Drawn drawn = drawn_within(run, limit);
   json j = describe(run);
-  j["triangleArray"] = arrays.add(info.triangles);
-  j["metric"] = arrays.add(bytes_of(std::span<const float>(inverse_rest_metric(info.rest_triangle))));
+  j["triangleArray"] = arrays.add(bytes_of(info.triangles));
+  j["metric"] = arrays.add(bytes_of(inverse_rest_metric(info.rest_triangle)));
   j["positions"] = describe(arrays, drawn.cloth);
   j["maps"] = append_maps(arrays, run, drawn.pressures);
   j["table"] = {{"titles", run.table.titles}, {"rows", run.table.rows}};
@@ -177,7 +169,7 @@ json append_run(Arrays& arrays, const ViewRun& run, std::size_t limit) {
     j["obstacles"].push_back({{"name", body.name},
                               {"moving", body.moving},
                               {"vertices", body.vertex_count},
-                              {"triangleArray", arrays.add(body.triangles)},
+                              {"triangleArray", arrays.add(bytes_of(body.triangles))},
                               {"positions", describe(arrays, drawn.bodies[b])}});
   }
   return j;

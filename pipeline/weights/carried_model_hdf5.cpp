@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
+#include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
 
 namespace selvedge {
@@ -25,9 +26,7 @@ void check_coefficients(const h5::Fields& fields, const std::string& name, const
 }  // namespace
 
 std::uint64_t mesh_hash(const Surface& surface) {
-  const std::string_view triangles(reinterpret_cast<const char*>(surface.triangles.data()),
-                                   sizeof(int) * static_cast<std::size_t>(surface.triangles.size()));
-  return hash_of(triangles, hash_of(std::to_string(surface.vertex_count)));
+  return hash_of(bytes_of(surface.triangles), hash_of(std::to_string(surface.vertex_count)));
 }
 
 void write_taught_carried(const std::filesystem::path& path, const TaughtCarried& taught) {

@@ -25,7 +25,7 @@ struct ImportedWeights {
 // Reads a checkpoint of HOOD (hood_final or postcvpr, hood_cvpr, fine15, fine48) or of ContourCraft, of any width. The
 // names of its tensors tell which one it is. Every name and every shape must be as published (docs/weights.md). Throws
 // Error that names a tensor which is missing, extra or misshapen. Statistics become mean and deviation in the authors'
-// float32 order (parity README, 9). The optimiser's state is not read. Safety: pickle.hpp, stored_archive.hpp.
+// float32 order (parity README, 9). The optimiser's state is not read. Safety: pickle.hpp, torch_archive.hpp.
 ImportedWeights read_published_weights(const std::filesystem::path&);
 
 // The origin of imported weights as names and values, for the weight file.

@@ -8,7 +8,6 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/weights/pickle_check.hpp"
-#include "pipeline/weights/stored_archive.hpp"
 #include "pipeline/weights/torch_tensor.hpp"
 
 namespace selvedge {
@@ -123,7 +122,12 @@ class PickleReader {
   }
   unsigned char next() { return static_cast<unsigned char>(take(1)[0]); }
 
-  std::uint64_t little_endian(std::size_t count) { return number_at(take(count), 0, count); }
+  std::uint64_t little_endian(std::size_t count) {
+    const std::string_view bytes = take(count);
+    std::uint64_t value = 0;
+    for (std::size_t k = count; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[k]);
+    return value;
+  }
 
   double big_endian_double() {
     std::uint64_t bits = 0;

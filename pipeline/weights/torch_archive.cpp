@@ -13,6 +13,13 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "storages are read as they lie in the file");
 
+constexpr std::int64_t largest_entry = std::int64_t{256} << 20;
+constexpr std::uint64_t most_read = std::uint64_t{1} << 30;
+
+const ZipForm torch_form{
+    "weights", "is it a file of torch.save, and whole? Load and save older ones (before torch 1.6) again with a newer",
+    "save the weights with torch.save, which neither compresses nor encrypts", false, largest_entry};
+
 // The folder inside of the archive, which torch names after the saved file.
 std::string archive_stem(const std::vector<std::string>& names, const std::string& where) {
   constexpr std::string_view pickle = "/data.pkl";
@@ -43,25 +50,32 @@ void for_each_element(const TorchTensor& tensor, const Take& take) {
 }  // namespace
 
 TorchArchive::TorchArchive(const std::filesystem::path& path)
-    : path_(path), archive_(path), stem_(archive_stem(archive_.names(), path.string())) {
-  const std::string order = stem_ + "/byteorder";
-  if (archive_.has(order) && archive_.bytes(order) != "little")
+    : path_(path), archive_(path, torch_form), stem_(archive_stem(archive_.names(), path.string())) {
+  if (archive_.has(stem_ + "/byteorder") && bytes("byteorder") != "little")
     refuse_pickle("was saved by a machine of another byte order", path.string());
-  pickle_ = read_pickle(archive_.bytes(stem_ + "/data.pkl"), path.string() + ": data.pkl");
+  pickle_ = read_pickle(bytes("data.pkl"), path.string() + ": data.pkl");
+}
+
+std::string TorchArchive::bytes(const std::string& name) {
+  std::string content = archive_.bytes(stem_ + "/" + name, path_.string() + ": " + shown(name));
+  read_ += content.size();
+  if (read_ > most_read)
+    refuse_pickle(fmt::format("holds more than the {} bytes that are read at most", most_read), path_.string());
+  return content;
 }
 
 std::vector<float> TorchArchive::floats(const TorchTensor& tensor, const std::string& name) {
   const std::string where = path_.string() + ": " + name;
   if (tensor.storage.number != TorchNumber::float32) refuse_pickle("holds integers, not float32", where);
-  const std::string bytes = archive_.bytes(stem_ + "/data/" + tensor.storage.key);
-  if (bytes.size() != sizeof(float) * static_cast<std::size_t>(tensor.storage.count))
-    refuse_pickle(fmt::format("has {} bytes in its storage {} instead of {} numbers", bytes.size(), tensor.storage.key,
+  const std::string stored = bytes("data/" + tensor.storage.key);
+  if (stored.size() != sizeof(float) * static_cast<std::size_t>(tensor.storage.count))
+    refuse_pickle(fmt::format("has {} bytes in its storage {} instead of {} numbers", stored.size(), tensor.storage.key,
                               tensor.storage.count),
                   where);
   std::vector<float> numbers(static_cast<std::size_t>(tensor.elements));
   for_each_element(tensor, [&](std::int64_t element, std::int64_t at) {
     std::memcpy(&numbers[static_cast<std::size_t>(element)],
-                bytes.data() + sizeof(float) * static_cast<std::size_t>(at), sizeof(float));
+                stored.data() + sizeof(float) * static_cast<std::size_t>(at), sizeof(float));
   });
   return numbers;
 }

@@ -74,7 +74,6 @@ std::string weights_info_text(const WeightsInfo& info) {
 }
 
 std::string weights_info_json(const WeightsInfo& info) {
-  using Json = nlohmann::ordered_json;
   const Architecture& a = info.file.architecture;
   Json encoders = Json::array(), steps = Json::array(), statistics = Json::object(), origin = Json::object();
   for (const EdgeEncoder& encoder : a.encoders)

@@ -161,16 +161,16 @@ std::string parity_text(const ParityReport& report) {
 }
 
 std::string parity_json(const ParityReport& report) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  Json rows = Json::array();
   for (const ParityRow& row : report.rows)
     rows.push_back({{"quantity", row.quantity},
                     {"unit", row.unit},
                     {"difference", number_or_null(row.difference)},
                     {"limit", row.limit},
                     {"same", row.difference <= row.limit}});
-  const nlohmann::ordered_json json = {{"network", report.network}, {"cloth_vertices", report.cloth_vertices},
-                                       {"nodes", report.nodes},     {"edges", report.edges},
-                                       {"same", is_clean(report)},  {"quantities", rows}};
+  const Json json = {{"network", report.network}, {"cloth_vertices", report.cloth_vertices},
+                     {"nodes", report.nodes},     {"edges", report.edges},
+                     {"same", is_clean(report)},  {"quantities", rows}};
   return json_text(json);
 }
 

@@ -1,5 +1,5 @@
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/run/memory_forms.hpp"
 #include "tests/fuzz/valid_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"

@@ -1,6 +1,6 @@
 #include <cstdlib>
 
-#include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/hdf5/neighbour_scale_hdf5.hpp"
 #include "tests/fuzz/valid_hdf5.hpp"
 
 using namespace selvedge;

@@ -1,4 +1,4 @@
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "tests/fuzz/valid_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "physics/scene/make_scene.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/run/run_scene.hpp"
 
 namespace selvedge::fake {

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/suites/stress.hpp"
 #include "pipeline/tools/check.hpp"
 #include "tests/pipeline/files.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/weights/import_weights.hpp"
 #include "tests/frame.hpp"
 #include "tests/learned/learned_scenes.hpp"

@@ -8,6 +8,7 @@
 #include "collision/geometry/error.hpp"
 #include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
+#include "tests/refusal.hpp"
 
 namespace selvedge::test_scene_numbers {
 
@@ -36,13 +37,10 @@ std::string refusal(const std::function<void(testing::World&)>& spoil) {
   testing::World w = testing::make_world(testing::sheet(2, 0.2, 0));
   add_obstacle(w, testing::sheet(2, 0.6, -0.1));
   spoil(w);
-  try {
+  return testing::refusal([&] {
     check_scene(w.scene);
     check_state(w.scene, w.state);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  });
 }
 
 }  // namespace

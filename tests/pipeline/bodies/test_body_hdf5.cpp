@@ -7,9 +7,10 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/refusal.hpp"
 
 namespace selvedge::test_body_hdf5 {
 
@@ -45,13 +46,7 @@ std::string complaint(const fake::Folder& folder, const std::string& field, cons
     REQUIRE(H5Ldelete(file.id(), field.c_str(), H5P_DEFAULT) >= 0);
     replace(file.id());
   }
-  try {
-    read_body(path);
-  } catch (const Error& error) {
-    CHECK_FALSE(error.cure().empty());
-    return error.what();
-  }
-  return "";
+  return testing::refusal([&] { read_body(path); });
 }
 
 template <class T>

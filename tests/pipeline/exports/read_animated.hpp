@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 
 // Readers of exported files, written from the formats' texts without any code of the writers.
 namespace selvedge::read_animated {

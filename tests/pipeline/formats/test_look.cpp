@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/look_hdf5.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/hdf5/look_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 
 namespace selvedge::test_look {

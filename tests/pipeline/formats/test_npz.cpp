@@ -6,6 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "tests/pipeline/fake_npz.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/refusal.hpp"
 
 namespace selvedge::test_npz {
 
@@ -48,17 +49,8 @@ std::string complaint(const std::string& npy) {
   return "";
 }
 
-template <class Read>
-std::string error_of(const Read& read) {
-  try {
-    read();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 using fake::has;
+using testing::refusal;
 
 }  // namespace
 
@@ -71,10 +63,10 @@ TEST_CASE("arrays that numpy has written are read") {
   CHECK(npz.numbers("f").shape == Shape{2, 3});
   CHECK(npz.numbers("f").values == std::vector<double>{0, 1, 2, 3, 4, 5});
   CHECK(npz.texts("s").values == std::vector<std::string>{"ma\xC3\x9F"});
-  const std::string error = error_of([&] { npz.numbers("o"); });
+  const std::string error = refusal([&] { npz.numbers("o"); });
   CHECK(has(error, "a.npz: o: is stored as pickled"));
   CHECK(has(error, "allow_pickle=True"));
-  CHECK(has(error_of([&] { npz.texts("o"); }), "pickled"));
+  CHECK(has(refusal([&] { npz.texts("o"); }), "pickled"));
 }
 
 TEST_CASE("every type of number is read, stored and compressed, in all versions of the format") {
@@ -113,7 +105,7 @@ TEST_CASE("every type of number is read, stored and compressed, in all versions 
     CHECK_THROWS_AS(npz.integers("f8"), Error);
     CHECK_THROWS_AS(npz.texts("f8"), Error);
     CHECK_THROWS_AS(npz.numbers("bytes"), Error);
-    CHECK(has(error_of([&] { npz.numbers("g8"); }), "a.npz: g8: is missing\n  cure: the file has: b1, bytes, f4"));
+    CHECK(has(refusal([&] { npz.numbers("g8"); }), "a.npz: g8: is missing\n  cure: the file has: b1, bytes, f4"));
   }
 }
 
@@ -172,7 +164,7 @@ TEST_CASE("what is no array or not whole is refused with its reason") {
 
 TEST_CASE("an archive that is damaged is refused") {
   const fake::Folder folder("npz_damaged");
-  CHECK(has(error_of([&] { Npz(folder.path / "absent.npz"); }), "check the path"));
+  CHECK(has(refusal([&] { Npz(folder.path / "absent.npz"); }), "check the path"));
   CHECK_THROWS_AS(Npz(folder.path), Error);
   CHECK_THROWS_AS(Npz(fake::write(folder, "text.npz", "no archive")), Error);
   CHECK_THROWS_AS(Npz(fake::write(folder, "empty.npz", "")), Error);
@@ -212,7 +204,7 @@ TEST_CASE("an array that claims more than is read is refused before memory is ta
   REQUIRE(entry != std::string::npos);
   const std::uint32_t claimed = 300'000'000;
   std::memcpy(bytes.data() + entry + 24, &claimed, sizeof claimed);
-  const std::string message = error_of([&] { Npz(fake::write(folder, "b.npz", bytes)).numbers("x"); });
+  const std::string message = refusal([&] { Npz(fake::write(folder, "b.npz", bytes)).numbers("x"); });
   INFO(message);
   CHECK(has(message, "b.npz: x"));
   CHECK(has(message, "asks for 3e+08 bytes; 268435456 are the most"));

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 #include "tests/pipeline/fake_body.hpp"
 #include "tests/pipeline/files.hpp"
 

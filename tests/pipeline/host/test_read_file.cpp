@@ -9,7 +9,7 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/npz.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/tools/convert_body.hpp"
 #include "pipeline/tools/untangle_mesh.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "pipeline/formats/checkpoint.hpp"
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 #include "pipeline/run/prepare.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/files.hpp"

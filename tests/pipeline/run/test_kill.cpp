@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "tests/pipeline/fake_run.hpp"
 
 namespace selvedge::test_kill {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/audit/audit.hpp"
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/run/run_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/tools/plan.hpp"

@@ -1,13 +1,14 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/checkpoint.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 #include "pipeline/run/memory_forms.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/frame.hpp"
 #include "tests/pipeline/run/sheet_over_ball.hpp"
+#include "tests/refusal.hpp"
 #include "tests/source_root.hpp"
 
 namespace selvedge::test_resume {
@@ -310,12 +311,7 @@ TEST_CASE("The folders of the cases are refused with file and field", "[resume]"
                                  std::filesystem::copy_options::overwrite_existing);
     RunRequest request;
     request.out = place;
-    try {
-      resume_scene(setup, *make_stepper(setup), request);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return testing::refusal([&] { resume_scene(setup, *make_stepper(setup), request); });
   };
   CHECK_THAT(refused("ol", ""), Contains("ol/"));
   CHECK_THAT(refused("without_obstacles", ""), Contains("without_obstacles/"));

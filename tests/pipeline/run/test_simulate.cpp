@@ -5,7 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/run/record_frame.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "tests/frame.hpp"

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/tools/check.hpp"

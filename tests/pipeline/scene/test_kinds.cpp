@@ -4,7 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/finish_step.hpp"
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/frame.hpp"

@@ -2,9 +2,9 @@
 
 #include <sstream>
 
-#include "collision/geometry/error.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/refusal.hpp"
 
 namespace selvedge::test_setup_warnings {
 using Catch::Matchers::Contains;
@@ -30,12 +30,7 @@ struct Scenes {
   Setup read(const std::string& yaml) const { return read_setup(fake::write(folder, "scene.yaml", yaml)); }
   std::string warnings(const std::string& yaml) const { return all(read(yaml).warnings); }
   std::string refusal(const std::string& yaml) const {
-    try {
-      read(yaml);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return testing::refusal([&] { read(yaml); });
   }
 };
 

@@ -3,7 +3,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
-#include "pipeline/formats/xdmf.hpp"
+#include "pipeline/hdf5/xdmf.hpp"
 #include "pipeline/tools/export.hpp"
 #include "tests/pipeline/files.hpp"
 

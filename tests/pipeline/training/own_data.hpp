@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "collision/geometry/error.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/training/trainer.hpp"
@@ -12,6 +11,7 @@
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/small_person.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
+#include "tests/refusal.hpp"
 
 // A folder with a user's own data for training.
 namespace selvedge::fake {
@@ -62,12 +62,7 @@ struct OwnData {
                            split);
   }
   std::string error(const std::vector<std::string>& overrides, const std::string& split = "") const {
-    try {
-      make_training_world(read_training(write(split), overrides).samples, 1);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return testing::refusal([&] { make_training_world(read_training(write(split), overrides).samples, 1); });
   }
 };
 

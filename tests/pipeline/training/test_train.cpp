@@ -11,6 +11,7 @@
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/pipeline/training/tiny_training.hpp"
+#include "tests/refusal.hpp"
 #include "tests/threads.hpp"
 
 namespace selvedge::test_train {
@@ -22,13 +23,10 @@ using fake::weights_of;
 namespace {
 
 std::string error_of(const std::filesystem::path& checkpoint, const TrainingOptions& options) {
-  try {
+  return testing::refusal([&] {
     TrainingHistory history;
     read_training_checkpoint(checkpoint, options, history);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "collision/geometry/error.hpp"
 #include "pipeline/drapes/drape_training_options.hpp"
 #include "pipeline/host/csv_columns.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
@@ -12,6 +11,7 @@
 #include "pipeline/training/training_options.hpp"
 #include "pipeline/training/training_tables.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/refusal.hpp"
 #include "tests/source_root.hpp"
 
 namespace selvedge::test_training_options {
@@ -29,12 +29,7 @@ std::vector<std::filesystem::path> training_files() {
 }
 
 std::string error_of(const std::filesystem::path& file, const std::vector<std::string>& overrides = {}) {
-  try {
-    read_training(file, overrides);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal([&] { read_training(file, overrides); });
 }
 
 }  // namespace

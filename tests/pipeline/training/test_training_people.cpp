@@ -5,7 +5,6 @@
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/tools/convert_body.hpp"
-#include "pipeline/training/soft_tissue_hdf5.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "pipeline/weights/import_weights.hpp"
 #include "tests/pipeline/fake_checkpoint.hpp"
@@ -234,18 +233,17 @@ TEST_CASE("training people: the folder of soft tissue is bounded, and so is what
   const OwnData& own = own_data();
   const Folder folder("training_flesh");
   TrainingWorld world = make_training_world(read_training(own.write(""), {"samples.flesh=true"}).samples, 1);
-  world.soft_tissue_folder = folder.path;
+  world.cache = folder.path;
   const PointsF before = skinned_frame(world, 0, 0, 0, 3).body;
   skinned_frame(world, 0, 0, 1, 3);
   CHECK(world.tissue_bytes > 0);
-  world.bodies[0].clips[0].looked = false;
   world.most_tissue = 0;  // the next look forgets, after writing
   CHECK(skinned_frame(world, 0, 0, 0, 3).body == before);
-  CHECK(world.bodies[0].clips[1].given.empty());
-  const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path / "flesh"), {}); };
+  CHECK_FALSE(world.bodies[0].clips[1].tissue);
+  const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path / "tissue"), {}); };
   CHECK(files() == 2);
   skinned_frame(world, 0, 0, 0, 5);
-  write_soft_tissue(folder.path, world, 1);
+  write_soft_tissue(world, 1);
   CHECK(files() == 0);
 }
 

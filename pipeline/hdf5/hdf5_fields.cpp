@@ -1,4 +1,4 @@
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/formats/xdmf.hpp"
+#include "pipeline/hdf5/xdmf.hpp"
 
 #include <fmt/format.h>
 

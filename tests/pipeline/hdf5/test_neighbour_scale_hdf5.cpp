@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/hdf5/neighbour_scale_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/source_root.hpp"
 

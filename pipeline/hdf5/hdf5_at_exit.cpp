@@ -1,4 +1,4 @@
-#include "pipeline/formats/hdf5_at_exit.hpp"
+#include "pipeline/hdf5/hdf5_at_exit.hpp"
 
 #include <hdf5.h>
 

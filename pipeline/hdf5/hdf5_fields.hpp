@@ -8,7 +8,7 @@
 #include <Eigen/SparseCore>
 
 #include "collision/geometry/points.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 
 namespace selvedge::h5 {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/formats/hdf5_handles.hpp"
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 #include "pipeline/reports/report_fields.hpp"
 
 namespace selvedge {

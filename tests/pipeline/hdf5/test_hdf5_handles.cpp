@@ -1,4 +1,4 @@
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 
 #include <fcntl.h>
 #include <sys/wait.h>

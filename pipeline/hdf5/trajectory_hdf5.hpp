@@ -5,7 +5,7 @@
 #include <string>
 
 #include "physics/scene/scene.hpp"
-#include "pipeline/formats/trajectory.hpp"
+#include "pipeline/hdf5/trajectory.hpp"
 
 namespace selvedge {
 

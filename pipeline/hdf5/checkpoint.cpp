@@ -1,4 +1,4 @@
-#include "pipeline/formats/checkpoint.hpp"
+#include "pipeline/hdf5/checkpoint.hpp"
 
 #include <limits>
 
@@ -6,8 +6,8 @@
 
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
-#include "pipeline/formats/hdf5_handles.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 
 namespace selvedge {
 namespace {

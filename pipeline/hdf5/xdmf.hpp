@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 
 namespace selvedge {
 

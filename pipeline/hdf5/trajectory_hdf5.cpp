@@ -1,4 +1,4 @@
-#include "pipeline/formats/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -7,9 +7,9 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
-#include "pipeline/formats/look_hdf5.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
+#include "pipeline/hdf5/look_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_row.hpp"
 #include "pipeline/host/version.hpp"
 
 namespace selvedge {

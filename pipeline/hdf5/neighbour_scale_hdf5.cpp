@@ -1,6 +1,6 @@
-#include "pipeline/formats/neighbour_scale_hdf5.hpp"
+#include "pipeline/hdf5/neighbour_scale_hdf5.hpp"
 
-#include "pipeline/formats/plain_network_hdf5.hpp"
+#include "pipeline/hdf5/plain_network_hdf5.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,9 +1,9 @@
-#include "pipeline/formats/look_hdf5.hpp"
+#include "pipeline/hdf5/look_hdf5.hpp"
 
 #include <limits>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 namespace selvedge::h5 {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "learned/repulsion/plain_network.hpp"
-#include "pipeline/formats/hdf5_fields.hpp"
+#include "pipeline/hdf5/hdf5_fields.hpp"
 
 namespace selvedge {
 

@@ -4,9 +4,9 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/scene/contact_forces.hpp"
-#include "pipeline/formats/look_hdf5.hpp"
-#include "pipeline/formats/trajectory_hdf5.hpp"
-#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/hdf5/look_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_hdf5.hpp"
+#include "pipeline/hdf5/trajectory_row.hpp"
 
 namespace selvedge {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/formats/trajectory_row.hpp"
+#include "pipeline/hdf5/trajectory_row.hpp"
 
 #include <bit>
 #include <cstddef>

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "pipeline/formats/hdf5_handles.hpp"
 #include "pipeline/formats/look.hpp"
+#include "pipeline/hdf5/hdf5_handles.hpp"
 
 namespace selvedge::h5 {
 
