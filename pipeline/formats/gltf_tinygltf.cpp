@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/same_places.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/library_message.hpp"
@@ -359,41 +358,6 @@ std::vector<std::string> add_meshes(const Document& file, int skin, const NameCh
   return names;
 }
 
-// Of each vertex the lowest one at its place whose weights are nearly the same. Parts of a body that touch have other
-// weights there and move apart; seams of textures have the same, but for rounding.
-std::vector<int> alike_places(const Points& x, const Eigen::SparseMatrix<double, Eigen::RowMajor>& weights) {
-  constexpr double most = 0.1;  // sum of the differences of two rows, each of which sums to 1
-  std::vector<int> places = same_places(x);
-  part_places(
-      [&](int v, int w) {
-        if (v == w) return true;
-        const Eigen::RowVectorXd one = weights.row(v), other = weights.row(w);
-        return (one - other).lpNorm<1>() <= most;
-      },
-      places);
-  return places;
-}
-
-// Joins vertices at one place that move alike, with the weights of the lowest.
-void join_vertices(const Document& file, const std::string& name, GltfScene& scene,
-                   const std::vector<Eigen::Triplet<double>>& weights) {
-  using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
-  Weights as_read(scene.mesh.x.rows(), static_cast<Eigen::Index>(scene.joints.size()));
-  as_read.setFromTriplets(weights.begin(), weights.end());
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_read.rows());
-  for (const Eigen::Triplet<double>& w : weights) sum[w.row()] += w.value();
-  for (Eigen::Index v = 0; v < as_read.rows(); ++v) as_read.row(v) /= sum[v];
-  const std::vector<int> places = alike_places(scene.mesh.x, as_read);
-  join_at(places, scene.mesh, name);
-  std::vector<Eigen::Triplet<double>> kept;
-  for (int v = 0; v < as_read.rows(); ++v)
-    for (Weights::InnerIterator w(as_read, v); places[v] == v && w; ++w)
-      kept.emplace_back(scene.mesh.welded[v], w.col(), w.value());
-  scene.weights.resize(scene.mesh.x.rows(), as_read.cols());
-  scene.weights.setFromTriplets(kept.begin(), kept.end());
-}
-
 std::optional<GltfPath> path_of(const std::string& name) {
   if (name == "translation") return GltfPath::translation;
   if (name == "rotation") return GltfPath::rotation;
@@ -465,7 +429,8 @@ GltfScene read_gltf(const std::filesystem::path& path, const NameChoice& choice)
   }
   std::vector<Eigen::Triplet<double>> weights;
   choice.check(add_meshes(file, number, choice, scene, weights), path.string());
-  join_vertices(file, path.filename().string(), scene, weights);
+  if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
+  scene.weights = join_alike(weights, std::ssize(scene.joints), scene.mesh, path.filename().string());
   for (std::size_t a = 0; a < file.model.animations.size(); ++a)
     scene.animations.push_back(animation_of(file, place, a));
   return scene;

@@ -63,6 +63,21 @@ Surface surface_of(const Points& x, const Triangles& triangles) {
   return make_surface(static_cast<int>(x.rows()), triangles);
 }
 
+// Of each vertex the lowest one at its place whose weights are nearly the same. Parts of a body that touch have other
+// weights there and move apart; seams of textures have the same, but for rounding.
+std::vector<int> alike_places(const Points& x, const Eigen::SparseMatrix<double, Eigen::RowMajor>& weights) {
+  constexpr double most = 0.1;  // sum of the differences of two rows, each of which sums to 1
+  std::vector<int> places = same_places(x);
+  part_places(
+      [&](int v, int w) {
+        if (v == w) return true;
+        const Eigen::RowVectorXd one = weights.row(v), other = weights.row(w);
+        return (one - other).lpNorm<1>() <= most;
+      },
+      places);
+  return places;
+}
+
 }  // namespace
 
 int coincident_vertices(const Points& x) { return lower_elsewhere(same_places(x)); }
@@ -130,6 +145,25 @@ void weld_as(const Mesh& welded, Mesh& mesh) {
   if (welded.welded.empty()) return;
   renumber(welded.welded, static_cast<int>(welded.x.rows()), mesh);
   mesh.triangles = welded.triangles;
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
+                                                        Eigen::Index joints, Mesh& mesh, const std::string& name) {
+  using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  Weights as_read(mesh.x.rows(), joints);
+  as_read.setFromTriplets(weights.begin(), weights.end());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_read.rows());
+  for (const Eigen::Triplet<double>& w : weights) sum[w.row()] += w.value();
+  for (Eigen::Index v = 0; v < as_read.rows(); ++v) as_read.row(v) /= sum[v];
+  const std::vector<int> places = alike_places(mesh.x, as_read);
+  join_at(places, mesh, name);
+  std::vector<Eigen::Triplet<double>> kept;
+  for (int v = 0; v < as_read.rows(); ++v)
+    for (Weights::InnerIterator w(as_read, v); places[v] == v && w; ++w)
+      kept.emplace_back(mesh.welded[v], w.col(), w.value());
+  Weights joined(mesh.x.rows(), joints);
+  joined.setFromTriplets(kept.begin(), kept.end());
+  return joined;
 }
 
 }  // namespace selvedge
