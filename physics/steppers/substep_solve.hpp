@@ -69,7 +69,6 @@ class SubstepSolve {
 
  private:
   ContactMotion motion_of(const Substep&) const;
-  int most_iterations(bool rough) const;
 
   const Scene& scene_;
   ContactStage& stage_;
@@ -78,7 +77,7 @@ class SubstepSolve {
   std::optional<PinnedParts> parts_;  // made when first needed
   bool friction_;
   double slip_speed_, edge_length_, deep_;
-  int rough_newton_, most_newton_;  // most iterations of a solve that another one follows, and of a step
+  int most_newton_;
 };
 
 }  // namespace selvedge
