@@ -99,7 +99,7 @@ struct ImplicitEuler::Impl {
   std::vector<double> energy, trial_energy;
   std::vector<char> drifting;
   double relative_stiffness = 0;       // mean_stiffness of the last system
-  int exact_from = 0, exact_wait = 0;  // Newton iterations until the exact Hessian is tried
+  int exact_from, exact_wait;          // Newton iterations until the exact Hessian is tried
 
   Impl(const Scene& s, const ImplicitEulerOptions& o, const Eigen::VectorXd& m)
       : scene(s),
@@ -107,11 +107,14 @@ struct ImplicitEuler::Impl {
         masses(m),
         elastic(make_elastic(s)),
         component(joined_components(s)),
-        linear(o.linear_solver, rest_vertices(s), free_vertices(s, m)) {}
+        linear(o.linear_solver, rest_vertices(s), free_vertices(s, m)),
+        exact_from(o.newton.exact_from),
+        exact_wait(o.newton.exact_from) {}
 
   void start(const StepProblem& problem) {
     prepare(scene, elastic, masses, problem, options.slip_speed, scratch, step);
-    exact_from = exact_wait = options.newton.exact_from;
+    if (!problem.warm_start) exact_wait = options.newton.exact_from;
+    exact_from = exact_wait;
     linear.start_family();
   }
   LinearSystem system() const {
@@ -220,7 +223,8 @@ bool ImplicitEuler::Impl::solve_linear(Definite definite, NewtonReport& report) 
 
 // Assembles at x and solves for the Newton step. Filtered Hessians always lead downhill but converge slowly where cloth
 // is compressed; the exact one converges quadratically where it is positive definite, so it is tried after a few
-// iterations (projection on demand, after Longva et al. 2023), and less often each time it fails.
+// iterations (projection on demand, after Longva et al. 2023), and less often each time it fails. What failed in a
+// solve counts in those that continue it.
 ImplicitEuler::Impl::Direction ImplicitEuler::Impl::find_direction(const Points& x, NewtonReport& report) {
   for (const HessianForm form : {HessianForm::exact, HessianForm::filtered}) {
     const bool exact = form == HessianForm::exact;

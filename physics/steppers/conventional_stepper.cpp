@@ -37,7 +37,7 @@ struct StepWork {
   const Exemption& left_alone = extras.left_alone ? *extras.left_alone : nothing;
 };
 
-enum class SubstepOutcome { clean, impact_too_deep, zones_not_converged, too_many_pairs, not_finite, stopped };
+enum class SubstepOutcome { clean, moves_too_far, zones_not_converged, too_many_pairs, not_finite, stopped };
 
 // Substeps of one length that are still to be taken; at their end obstacles are as in `nodes` and pins as in `pins`.
 struct SubstepRun {
@@ -90,7 +90,7 @@ class ConventionalStepper final : public Stepper {
                         double time_left) const;
   void end_substep(StepWork&, Substep&&, SubstepState&);
   bool advance(StepWork&, SubstepState&, SubstepRun whole);
-  int planned_substeps(const State& from, const Drive&, double dt, const Points& nodes) const;
+  int planned_substeps(double dt) const;
   void begin_contact(StepWork&, const Points& nodes);
 
   const Scene& scene_;
@@ -271,7 +271,7 @@ SubstepOutcome ConventionalStepper::substep(StepWork& work, Substep& s) {
   const NewtonReport newton = solve_.with_contact(s, problem, x, contacts, work.report);
   if (newton.stopped) return SubstepOutcome::stopped;
   if (!newton.finite) return SubstepOutcome::not_finite;
-  if (s.parts > 1) return SubstepOutcome::impact_too_deep;
+  if (s.parts > 1) return SubstepOutcome::moves_too_far;
   work.report.collision.contacts = static_cast<int>(contacts.terms.size());
   {
     const Timed timed(work.report.seconds.solve);
@@ -310,9 +310,9 @@ void ConventionalStepper::end_substep(StepWork& work, Substep&& s, SubstepState&
   now.forces = std::move(s.forces);
 }
 
-// Takes all substeps. A substep with impacts in fast motion is cut into parts. One whose zones do not converge is tried
-// again with obstacles that give way, then halved; only the last halves take the last resort. One with too many near
-// pairs is halved too. False if the step is rejected; the report says why.
+// Takes all substeps. A substep whose contacts slide too far, or with impacts in fast motion, is cut into parts. One
+// whose zones do not converge is tried again with obstacles that give way, then halved; only the last halves take the
+// last resort. One with too many near pairs is halved too. False if the step is rejected; the report says why.
 bool ConventionalStepper::advance(StepWork& work, SubstepState& now, SubstepRun whole) {
   const auto give_up = [&](Reason reason) {
     reject(reason, work.report);
@@ -373,16 +373,9 @@ void ConventionalStepper::begin_contact(StepWork& work, const Points& nodes) {
   update_pairs(contact_.search, contact_.options.thickness, nodes, nodes, contact_.path);
 }
 
-int ConventionalStepper::planned_substeps(const State& from, const Drive& drive, double dt, const Points& nodes) const {
-  if (options_.substeps) return *options_.substeps;
-  // The list may have further pairs that depend on earlier steps, which a checkpoint does not store: they are left out.
-  const double thickness = contact_.options.thickness;
-  auto touching = has_contact() ? pairs_within(contact_.path, nodes, thickness) : std::vector<NodePair>{};
-  std::erase_if(touching,
-                [&](const NodePair& pair) { return !(closest(pair, nodes).squared_distance < thickness * thickness); });
-  return substeps_for_contact(fastest_past(touching, from, drive, dt), dt, edge_length_,
-                              options_.min_substeps.value_or(least_substeps(dt, options_.substep)),
-                              options_.max_substeps, options_.substep);
+int ConventionalStepper::planned_substeps(double dt) const {
+  const int least = options_.min_substeps.value_or(least_substeps(dt, options_.substep));
+  return options_.substeps.value_or(std::min(least, options_.max_substeps));
 }
 
 StepReport not_finite(StepReport report) {
@@ -409,7 +402,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   if (has_contact()) begin_contact(work, now.nodes);
   if (work.left_alone.any()) now.history = {};
   if (options_.guess == FirstGuess::carried && !extras.guess) work.carried = carried_guess(scene_, from, drive, dt);
-  const int planned = planned_substeps(from, drive, dt, now.nodes);
+  const int planned = planned_substeps(dt);
   // An obstacle that had no room will hardly have room now.
   const int halvings = from.pinched ? 0 : options_.substep.max_halvings,
             parts = options_.substeps ? 1 : options_.max_substeps / planned;

@@ -13,16 +13,18 @@ struct SubstepOptions {
   double normal_change = 0.05;
   ContactTermOptions contact;
 
-  // A step is cut so that pairs that meet (with icm: all vertices) move by at most this many mean edges in a substep,
-  // as far as max_substeps allows.
+  // A step is cut so that pairs that meet move on after their impact by at most this many mean edges in a substep
+  // (with icm: all vertices), as far as max_substeps allows.
   static constexpr double max_motion = 2.5;
-  // It is cut so that a touching pair slides by at most this many mean edges. More locks cloth that is pulled round a
-  // post.
+  // It is cut so that a contact that presses slides by at most this many mean edges. More locks cloth that is pulled
+  // round a post.
   static constexpr double max_slide = 1;
   // An impact this many mean edges deep becomes a term of the next solve.
   static constexpr double deep_impact = 0.05;
   // A solve with contact may take this part of max_newton, since another one follows.
   static constexpr double contact_iterations = 0.5;
+  // A first solve that another one follows takes at most this many iterations, or that part of max_newton if it is more.
+  static constexpr int rough_iterations = 4;
   // A substep without room solves again at most this often, since no stiffness makes room.
   static constexpr int pinched_passes = 3;
   // A substep whose zones do not converge is halved this often before the last resort.

@@ -1,6 +1,8 @@
 #include "physics/steppers/substep_solve.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "collision/geometry/stopwatch.hpp"
 #include "physics/scene/features.hpp"
@@ -28,6 +30,8 @@ SubstepSolve::SubstepSolve(const Scene& scene, const ImplicitEulerOptions& euler
       slip_speed_(euler.slip_speed),
       edge_length_(mean_edge_length(scene)),
       deep_(deep_impact(scene, options)),
+      rough_newton_(std::max(options.rough_iterations,
+                             static_cast<int>(std::lround(options.contact_iterations * euler.max_newton)))),
       most_newton_(euler.max_newton_step) {}
 
 ContactMotion SubstepSolve::motion_of(const Substep& s) const {
@@ -37,7 +41,7 @@ ContactMotion SubstepSolve::motion_of(const Substep& s) const {
 NewtonReport SubstepSolve::once(const StepProblem& problem, Points& x, StepReport& report) {
   const Timed timed(report.seconds.solve);
   StepProblem bounded = problem;
-  bounded.most_iterations = std::max(1, most_newton_ - report.iterations);
+  bounded.most_iterations = std::max(1, std::min(problem.most_iterations, most_newton_ - report.iterations));
   const NewtonReport newton = solver_.solve(bounded, x);
   count_solve(newton, report);
   report.out_of_newton = report.out_of_newton || (!newton.converged && report.iterations >= most_newton_);
@@ -73,11 +77,14 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
   const double creep = slip_speed_ * s.h;
   // If nothing touches, or touching cloth does not move, the first solve is likely to be the last one.
   const bool calm = !s.pinched && mean_touching(contacts.terms, s.h * *problem.v0) < creep;
+  const int last = s.pinched ? options_.pinched_passes : options_.max_passes;
   for (int pass = 0;; ++pass) {
     problem.contacts = contacts.terms;
     problem.iteration_scale = contacts.terms.empty() ? 1 : options_.contact_iterations;
     problem.warm_start = pass > 0;
     const bool friction = friction_ && !contacts.terms.empty();
+    // The second solve begins where the first one ends, which may be far from its minimum.
+    problem.most_iterations = pass == 0 && !calm && last > 0 ? rough_newton_ : std::numeric_limits<int>::max();
     problem.tolerance_scale = pass > 1 || (calm && friction) ? options_.friction_tolerance
                               : pass == 0 && !calm           ? options_.first_tolerance
                                                              : 1;
@@ -88,10 +95,13 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     if (s.forces) s.friction_loads = normal_forces(contacts.terms);
     const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
-    if (pass == (s.pinched ? options_.pinched_passes : options_.max_passes)) return newton;
+    if (pass == 0)
+      s.parts = parts_for_slide(farthest_slide(contacts.terms, *problem.x0, x), edge_length_, s.max_parts, options_);
+    if (pass == last) return newton;
     const auto found = impacts(nodes0, s.nodes, report);
     if (pass == 0)
-      s.parts = parts_for_distance(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts, options_);
+      s.parts = std::max(s.parts,
+                         parts_for_impact(farthest_past(found, nodes0, s.nodes), edge_length_, s.max_parts, options_));
     if (s.parts > 1 || report.out_of_newton || report.out_of_response) return newton;
     if (calm && mean_touching(contacts.terms, x - *problem.x0) < creep && deepest(found, s.nodes) < deep_ &&
         mistaken_friction(solved, contacts.terms, *problem.x0, x, creep) < options_.normal_change)

@@ -77,7 +77,7 @@ class SubstepSolve {
   std::optional<PinnedParts> parts_;  // made when first needed
   bool friction_;
   double slip_speed_, edge_length_, deep_;
-  int most_newton_;
+  int rough_newton_, most_newton_;  // most iterations of the first solve if another one follows, and of a step
 };
 
 }  // namespace selvedge

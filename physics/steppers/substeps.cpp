@@ -27,34 +27,28 @@ int substeps_for_speed(const State& from, const Drive& drive, double dt, double 
   return parts(dt * speed, options.max_motion * edge_length, least_substeps(dt, options), max_substeps);
 }
 
-int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most,
-                         const SubstepOptions& options) {
-  return parts(dt * contact_speed, options.max_slide * edge_length, least, most);
+int parts_for_slide(double slide, double edge_length, int most, const SubstepOptions& options) {
+  return parts(slide, options.max_slide * edge_length, 1, most);
 }
 
-int parts_for_distance(double distance, double edge_length, int most, const SubstepOptions& options) {
+int parts_for_impact(double distance, double edge_length, int most, const SubstepOptions& options) {
   return parts(distance, options.max_motion * edge_length, 1, most);
 }
 
-double fastest_past(std::span<const NodePair> pairs, const State& from, const Drive& drive, double dt) {
-  std::vector<Points> obstacles;
-  for (std::size_t k = 0; k < from.obstacles.size(); ++k)
-    obstacles.push_back((drive.obstacles[k] - from.obstacles[k]) / dt);
-  const Points v = gather_nodes(from.v, obstacles);
-  double fastest = 0;
-  for (const NodePair& pair : pairs) fastest = std::max(fastest, (v.row(pair.nodes[0]) - v.row(pair.nodes[3])).norm());
-  return fastest;
+double farthest_slide(std::span<const ContactTerm> terms, const Points& x0, const Points& x1) {
+  double farthest = 0;
+  for (const ContactTerm& term : terms)
+    if (term.normal_force > 0) farthest = std::max(farthest, contact_slip(term, x0, x1).norm());
+  return farthest;
 }
 
 double farthest_past(std::span<const Impact> impacts, const Points& nodes0, const Points& nodes1) {
   double farthest = 0;
   for (const Impact& impact : impacts) {
-    const auto moved = [&](int i) {
-      return Vec3(row(nodes1, impact.pair.nodes[i]) - row(nodes0, impact.pair.nodes[i]));
-    };
-    const int split = impact.pair.kind == PairKind::vertex_face ? 1 : 2;
-    for (int a = 0; a < split; ++a)
-      for (int b = split; b < 4; ++b) farthest = std::max(farthest, (moved(a) - moved(b)).norm());
+    Vec3 motion = Vec3::Zero();
+    for (int i = 0; i < 4; ++i)
+      motion += impact.weights[i] * (row(nodes1, impact.pair.nodes[i]) - row(nodes0, impact.pair.nodes[i]));
+    farthest = std::max(farthest, (1 - impact.time) * motion.norm());
   }
   return farthest;
 }

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "collision/contact/node_pair.hpp"
 #include "collision/contact/response.hpp"
+#include "physics/energies/contact_energy.hpp"
 #include "physics/scene/scene.hpp"
 #include "physics/scene/stepper.hpp"
 #include "physics/solve/bdf2.hpp"
@@ -27,17 +27,14 @@ int least_substeps(double dt, const SubstepOptions&);
 // Enough to keep every vertex's motion in a substep within a few mesh edges, and at least least_substeps.
 int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps,
                        const SubstepOptions&);
-// Enough to keep the sliding of touching pairs within `max_slide`.
-int substeps_for_contact(double contact_speed, double dt, double edge_length, int least, int most,
-                         const SubstepOptions&);
-// Parts of a substep, enough to keep a sliding motion of `distance` [m] within a few edges in each: contact cannot be
-// linearised over more.
-int parts_for_distance(double distance, double edge_length, int most, const SubstepOptions&);
+// Parts of a substep, since contact cannot be linearised over more. In each of them a contact slides by at most
+// `max_slide` edges, and a pair moves on after its impact by at most `max_motion` edges.
+int parts_for_slide(double slide, double edge_length, int most, const SubstepOptions&);
+int parts_for_impact(double distance, double edge_length, int most, const SubstepOptions&);
 
-// The largest sliding speed of a pair, between one vertex of each primitive [m/s].
-double fastest_past(std::span<const NodePair>, const State& from, const Drive&, double dt);
-
-// The largest sliding motion of an impact, between one node of each primitive [m].
+// How far the contacts that press slide, at most [m].
+double farthest_slide(std::span<const ContactTerm>, const Points& x0, const Points& x1);
+// How far the touching points of an impact move on past each other after it, at most [m].
 double farthest_past(std::span<const Impact>, const Points& nodes0, const Points& nodes1);
 
 // The largest distance of an impact from its target at the end [m].

@@ -279,11 +279,14 @@ TEST_CASE("conventional stepper: a sheet that slides or hits is stepped finer th
   const double edge = 0.2 * (2 + std::sqrt(2.0)) / (3 * 8);
   CHECK(substeps(0.1, {10, 0, 0}) == 2);
   CHECK(substeps(0.1, {10, 0, 0}, 1.0 / 60) == 1);  // short enough to damp little
-  CHECK(substeps(1.5e-3, {4, 0, 0}) == std::ceil(4.0 / 30 / edge));
-  // It meets the floor in the first of two substeps, or in the second.
-  const double parts = std::ceil(10.0 / 60 / (2.5 * edge));
-  CHECK(substeps(0.1, {0, -10, 0}) == parts + 1);
-  CHECK(substeps(0.25, {0, -10, 0}) == 1 + parts);
+  // Contact presses a sheet that lies within its gap until it leaves. One that leaves at the start is not pressed.
+  CHECK(substeps(1.5e-3, {4, 0, 0}) == std::ceil(4.0 / 60 / edge) + 1);
+  CHECK(substeps(1.5e-3, {4, 1, 0}) == 2);
+  // It meets the floor in the first of two substeps, or in the second; what counts is the way after that.
+  const double in_substep = 10.0 / 60, edges = 2.5 * edge;
+  CHECK(substeps(0.02, {0, -10, 0}) == std::ceil((in_substep - 0.02) / edges) + 1);
+  CHECK(substeps(0.2, {0, -10, 0}) == 1 + std::ceil((2 * in_substep - 0.2) / edges));
+  CHECK(substeps(0.13, {0, -10, 0}) == 2);
 }
 
 }  // namespace selvedge::test_conventional_stepper

@@ -90,11 +90,14 @@ TEST_CASE("repulsion tables: small garments are made, trained on and measured, a
 
   const DrapeTrainSummary tank = train(folder, "tank_run", "tank", {});
   check_rows(tank);
-  for (const char* name : {"learned", "neighbours"}) CHECK(row_of(tank, name).alpha_deviation > 0.02);
   CHECK(shrunk(folder, "tank_run/backbone.csv", "reconstruction") < 0.1);
   CHECK(shrunk(folder, "tank_run/distance.csv", "error_mm") < 0.3);
 
   const std::string network = "distance.weights=" + (folder.path / "tank_run" / "distance.h5").string();
+  // A backbone that is trained less leaves vertices of training drapes inside, which scales can be learned from.
+  const DrapeTrainSummary inside =
+      train(folder, "inside_run", "tank", {network, "rows=[learned, neighbours]", "backbone.stage.steps=150"});
+  for (const char* name : {"learned", "neighbours"}) CHECK(row_of(inside, name).alpha > 1.03);
   check_rows(train(folder, "shorts_run", "shorts", {network}));
   const DrapeTrainSummary graph =
       train(folder, "gcnn_run", "tank",

