@@ -143,28 +143,41 @@ function edgeLength(metric) {
   return Math.sqrt(area / Math.max(1, count) * 4 / Math.sqrt(3));
 }
 
-// Round heads that are a third of an edge wide, so that cloth worn over a pinned waist covers them.
-function pinHeads(run, geometry) {
-  const pins = new THREE.BufferGeometry();
-  pins.setAttribute("position", geometry.attributes.position);
-  pins.setIndex(run.pins);
-  const material = new THREE.ShaderMaterial({
-    uniforms: {width: {value: 0.35 * edgeLength(run.metric)}, tall: {value: 1}},
-    vertexShader: `uniform float width, tall;
-      void main() {
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-        gl_PointSize = clamp(width * projectionMatrix[1][1] * 0.5 * tall / gl_Position.w, 2.0, 14.0);
-      }`,
-    fragmentShader: `void main() {
-        if (length(gl_PointCoord - 0.5) > 0.5) discard;
-        gl_FragColor = vec4(vec3(0.95), 1.0);
-      }`,
-  });
-  const heads = new THREE.Points(pins, material);
-  heads.onBeforeRender = (renderer) => {
-    material.uniforms.tall.value = renderer.getCurrentViewport(new THREE.Vector4()).w;
-  };
-  return heads;
+// Round heads that are a third of an edge wide. They lie flat on their cloth, so that cloth worn over a pinned waist
+// covers them, also where it is seen at a slant.
+function pinHeads(run, geometry, edge) {
+  const corners = 12, pins = run.pins, index = [];
+  for (let p = 0; p < pins.length; ++p)
+    for (let k = 1; k + 1 < corners; ++k) index.push(corners * p, corners * p + k, corners * p + k + 1);
+  const heads = new THREE.BufferGeometry();
+  heads.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * corners * pins.length), 3));
+  heads.setIndex(index);
+  const mesh = new THREE.Mesh(heads, new THREE.MeshBasicMaterial({
+    color: linear("#f9f9f9"),
+    side: THREE.DoubleSide,
+    polygonOffset: true,
+    polygonOffsetFactor: 0,
+    polygonOffsetUnits: -2
+  }));
+  const at = heads.attributes.position, along = new THREE.Vector3(), across = new THREE.Vector3(),
+        normal = new THREE.Vector3(), centre = new THREE.Vector3();
+  // Puts the heads where the cloth is. A head is at least two pixels wide; `pixels`: of a metre.
+  function move(pixels) {
+    const radius = Math.max(0.175 * edge, 1 / pixels);
+    for (let p = 0; p < pins.length; ++p) {
+      centre.fromArray(geometry.attributes.position.array, 3 * pins[p]);
+      normal.fromArray(geometry.attributes.normal.array, 3 * pins[p]);
+      along.set(normal.y, normal.z, normal.x).cross(normal).normalize();
+      across.crossVectors(normal, along);
+      for (let k = 0; k < corners; ++k) {
+        const angle = 2 * Math.PI * k / corners, u = radius * Math.cos(angle), v = radius * Math.sin(angle);
+        at.setXYZ(corners * p + k, centre.x + u * along.x + v * across.x, centre.y + u * along.y + v * across.y,
+                  centre.z + u * along.z + v * across.z);
+      }
+    }
+    at.needsUpdate = true;
+  }
+  return {mesh, move};
 }
 
 // Builds the objects of one run in a group and returns them with `show(drawn, look)`.
@@ -187,7 +200,8 @@ function makeFigure(run) {
   const marks = markMeshes(geometry, Math.max(1, ...run.marked.map((list) => list.length)));
   group.add(...sides, wire, ...marks);
 
-  group.add(pinHeads(run, geometry));
+  const edge = edgeLength(run.metric), heads = pinHeads(run, geometry, edge);
+  group.add(heads.mesh);
 
   const bodies = run.obstacles.map((body) => {
     const mesh = new THREE.Mesh(surfaceGeometry(body.vertices, body.triangles), new THREE.MeshStandardMaterial({
@@ -210,10 +224,13 @@ function makeFigure(run) {
   });
 
   // Edges appear where they leave something of a triangle to be seen: from ten pixels to twenty. `pixels`: of a metre.
-  const edge = edgeLength(run.metric);
-  function outline(pixels) { marks[2].material.opacity = 0.8 * Math.min(1, Math.max(0, pixels * edge / 10 - 1)); }
+  function outline(pixels) {
+    marks[2].material.opacity = 0.8 * Math.min(1, Math.max(0, pixels * edge / 10 - 1));
+    if (drawn !== pinned.drawn || pixels !== pinned.pixels) heads.move(pixels);
+    pinned = {drawn, pixels};
+  }
 
-  let drawn = -1;
+  let drawn = -1, pinned = {};
   function moveTo(next) {
     unpack(run.positions, next, geometry.attributes.position.array);
     updateNormals(geometry);
