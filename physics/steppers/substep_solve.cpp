@@ -96,7 +96,8 @@ NewtonReport SubstepSolve::with_contact(Substep& s, StepProblem& problem, Points
     const std::vector<ContactTerm> solved = calm ? contacts.terms : std::vector<ContactTerm>{};
     const double change = lag_normal_forces(contacts.terms, x);
     if (pass == 0)
-      s.parts = parts_for_slide(farthest_slide(contacts.terms, *problem.x0, x), edge_length_, s.max_parts, options_);
+      s.parts = parts_for_slide(farthest_slide(contacts.terms, *problem.x0, *problem.x0 + s.h * *problem.v0, x),
+                                edge_length_, s.max_parts, options_);
     if (pass == last) return newton;
     const auto found = impacts(nodes0, s.nodes, report);
     if (pass == 0)

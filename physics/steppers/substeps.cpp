@@ -35,10 +35,11 @@ int parts_for_impact(double distance, double edge_length, int most, const Subste
   return parts(distance, options.max_motion * edge_length, 1, most);
 }
 
-double farthest_slide(std::span<const ContactTerm> terms, const Points& x0, const Points& x1) {
+double farthest_slide(std::span<const ContactTerm> terms, const Points& x0, const Points& coasting, const Points& x1) {
   double farthest = 0;
   for (const ContactTerm& term : terms)
-    if (term.normal_force > 0) farthest = std::max(farthest, contact_slip(term, x0, x1).norm());
+    if (term.normal_force > 0)
+      farthest = std::max(farthest, std::min(contact_slip(term, x0, coasting).norm(), contact_slip(term, x0, x1).norm()));
   return farthest;
 }
 

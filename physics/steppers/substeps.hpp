@@ -32,8 +32,9 @@ int substeps_for_speed(const State& from, const Drive&, double dt, double edge_l
 int parts_for_slide(double slide, double edge_length, int most, const SubstepOptions&);
 int parts_for_impact(double distance, double edge_length, int most, const SubstepOptions&);
 
-// How far the contacts that press slide, at most [m].
-double farthest_slide(std::span<const ContactTerm>, const Points& x0, const Points& x1);
+// How far the contacts that press slide, at most, both at the speed at which the substep begins, which leads to
+// `coasting`, and in its solve, which ends at x1 [m].
+double farthest_slide(std::span<const ContactTerm>, const Points& x0, const Points& coasting, const Points& x1);
 // How far the touching points of an impact move on past each other after it, at most [m].
 double farthest_past(std::span<const Impact>, const Points& nodes0, const Points& nodes1);
 
