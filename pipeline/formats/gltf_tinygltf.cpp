@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/gltf_numbers_tinygltf.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/library_message.hpp"
@@ -22,7 +23,7 @@
 namespace selvedge {
 namespace {
 
-using Numbers = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Numbers = GltfNumbers;
 
 // A hexadecimal digit's value; -1 for anything else.
 int hex_value(char c) {
@@ -131,63 +132,18 @@ class Document {
     throw Error(what, file_.string() + ": " + part, cure);
   }
 
-  // An entry of one of the file's lists.
   template <class Entry>
   const Entry& entry(const std::vector<Entry>& list, int index, const std::string& part) const {
-    if (index < 0 || index >= std::ssize(list))
-      fail(part, "names entry " + std::to_string(index) + " of " + std::to_string(list.size()), "export it anew");
-    return list[index];
+    return gltf_entry(list, index, file_.string() + ": " + part);
   }
 
-  // The numbers of an accessor, one row per element. Throws Error if it does not have `columns` columns.
-  Numbers numbers(int index, int columns, const std::string& part) const {
-    const tinygltf::Accessor& accessor = entry(model.accessors, index, part);
-    if (accessor.sparse.isSparse) fail(part, "is stored sparsely", "export it without sparse accessors");
-    const int has = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-    if (has != columns)
-      fail(part, "has " + std::to_string(has) + " numbers a row, not " + std::to_string(columns), "export it anew");
-    const tinygltf::BufferView& view = entry(model.bufferViews, accessor.bufferView, part);
-    const std::vector<unsigned char>& bytes = entry(model.buffers, view.buffer, part).data;
-    const int stride = accessor.ByteStride(view);
-    const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
-    if (stride <= 0 || size <= 0) fail(part, "is of no known type", "export it anew");
-    const std::size_t row = static_cast<std::size_t>(size) * static_cast<std::size_t>(columns);
-    const auto fits = [](std::size_t begin, std::size_t length, std::size_t whole) {
-      return begin <= whole && length <= whole - begin;
-    };
-    if (accessor.count > bytes.size() || !fits(view.byteOffset, view.byteLength, bytes.size()) ||
-        (accessor.count > 0 &&
-         !fits(accessor.byteOffset, (accessor.count - 1) * static_cast<std::size_t>(stride) + row, view.byteLength)))
-      fail(part, "reaches beyond its buffer", "the file is cut short or damaged");
-    Numbers all(static_cast<Eigen::Index>(accessor.count), columns);
-    const unsigned char* begin = bytes.data() + view.byteOffset + accessor.byteOffset;
-    for (Eigen::Index i = 0; i < all.rows(); ++i)
-      for (int k = 0; k < columns; ++k)
-        all(i, k) = number(begin + i * stride + k * size, accessor.componentType, accessor.normalized, part);
-    if (!all.allFinite()) fail(part, "is not finite", "repair it where it was made");
-    return all;
+  Numbers numbers(int accessor, int columns, const std::string& part) const {
+    return gltf_numbers(model, accessor, columns, file_.string() + ": " + part);
   }
 
   tinygltf::Model model;
 
  private:
-  double number(const unsigned char* at, int type, bool normalized, const std::string& part) const {
-    const auto as = [&]<class Value>(Value value) {
-      std::memcpy(&value, at, sizeof value);
-      const double scale = normalized ? static_cast<double>(std::numeric_limits<Value>::max()) : 1;
-      return std::max(static_cast<double>(value) / scale, normalized ? -1.0 : std::numeric_limits<double>::lowest());
-    };
-    if (type == TINYGLTF_COMPONENT_TYPE_BYTE) return as(std::int8_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return as(std::uint8_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_SHORT) return as(std::int16_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return as(std::uint16_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) return as(std::uint32_t{});
-    if (type != TINYGLTF_COMPONENT_TYPE_FLOAT) fail(part, "is of no known type", "export it anew");
-    float value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-  }
-
   std::filesystem::path file_;
 };
 

@@ -81,7 +81,7 @@ Mesh read_mesh(const fs::path& path) {
   const std::string extension = lower_extension(path), name = path.string();
   if (extension != ".obj" && extension != ".ply")
     throw Error("has an extension that no mesh reader knows", name, "known: .obj, .ply");
-  const std::string text = read_text_file(path, "mesh");
+  const std::string text = extension == ".obj" ? read_text_file(path, "mesh") : read_headed_file(path, "mesh");
   if (text.empty()) throw Error("is empty", name, "name a mesh file with vertices and faces");
   Mesh mesh = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);
   if (mesh.x.rows() == 0) throw Error("has no vertices", name, "name a mesh file with vertices and faces");

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/half_float.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/read_file.hpp"
 
@@ -41,14 +42,7 @@ struct CacheBytes {
     return value;
   }
 
-  double coordinate() {
-    if (!half) return next<float>();
-    const auto word = next<std::uint16_t>();  // IEEE 754 binary16
-    const int exponent = word >> 10 & 31, digits = word & 1023;
-    const double size = exponent == 31 ? (digits ? NAN : INFINITY)
-                                       : std::ldexp(exponent ? 1024 + digits : digits, (exponent ? exponent : 1) - 25);
-    return word >> 15 ? -size : size;
-  }
+  double coordinate() { return half ? half_value(next<std::uint16_t>()) : next<float>(); }
 
   void check_size(std::int32_t points, std::int32_t frames, std::size_t head) const {
     if (points < 1 || frames < 1)
