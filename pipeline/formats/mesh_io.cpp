@@ -10,6 +10,7 @@
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
 #include "pipeline/formats/polygon.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 
@@ -17,12 +18,6 @@ namespace selvedge {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 void keep_rows(Triangles& triangles, const std::vector<int>& kept) {
   if (triangles.rows() == 0) return;

@@ -12,6 +12,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/half_float.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -129,7 +130,7 @@ PointCache read_mdd(CacheBytes file) {
 }  // namespace
 
 PointCache read_point_cache(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = lower_extension(path);
   CacheBytes file{path.string(), read_file(path, "point cache"), extension == ".mdd", extension == ".pc16"};
   if (extension == ".mdd") return read_mdd(std::move(file));
   if (extension == ".pc2" || extension == ".pc16") return read_pc2(std::move(file));

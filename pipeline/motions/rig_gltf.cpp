@@ -72,7 +72,8 @@ std::vector<int> kept_joints(const GltfScene& scene, const std::vector<int>& par
   const Eigen::VectorXd used = scene.weights.transpose() * Eigen::VectorXd::Ones(scene.weights.rows());
   std::vector<int> roots = children(-1);
   if (roots.size() != 1)
-    throw Error(fmt::format("has {} roots", roots.size()), file + ": skin, joints", "give the armature one root joint");
+    throw Error(fmt::format("has {} roots", roots.size()), file + ": skin, joints",
+                "give the armature one root joint, or choose meshes that follow one armature");
   while (used[roots[0]] == 0 && children(roots[0]).size() == 1) roots = children(roots[0]);
   std::vector<int> order = roots;
   for (std::size_t k = 0; k < order.size(); ++k)

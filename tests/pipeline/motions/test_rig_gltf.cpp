@@ -107,57 +107,6 @@ TEST_CASE("glTF: a rigged body and its motion come back from below an armature o
   CHECK_THROWS_WITH(read_gltf_clip(rig, "walk", 30), Contains("no animation `walk`") && Contains("swing"));
 }
 
-TEST_CASE("glTF: a body below a mirrored armature is mirrored, and its faces stay outside", "[rig_gltf]") {
-  const Folder folder("gltf_mirrored");
-  const BodyModel body = fake::body(6, 40, 0, false);
-  const Clip clip = some_motion(6, 4);
-  fake::GltfFile file = fake::gltf_of(body, clip, body.joints);
-  const GltfRig plain = read_gltf_rig(fake::write(folder, "plain.glb", file.glb()));
-  auto& nodes = file.json["nodes"];
-  nodes.push_back({{"name", "mirror"}, {"scale", {-1, 1, 1}}, {"children", {0}}});
-  file.json["scenes"][0]["nodes"] = {nodes.size() - 1};
-  const GltfRig rig = read_gltf_rig(fake::write(folder, "rig.glb", file.glb()));
-  const auto mirrored = [](Points x) {
-    x.col(0) = -x.col(0);
-    return x;
-  };
-  CHECK((rig.body.skin.rest - mirrored(plain.body.skin.rest)).isZero(1e-6));
-  CHECK(rig.body.skin.triangles.col(0) == plain.body.skin.triangles.col(0));
-  CHECK(rig.body.skin.triangles.col(1) == plain.body.skin.triangles.col(2));
-  const Clip moved = read_gltf_clip(rig, "", 30), moved_plain = read_gltf_clip(plain, "", 30);
-  REQUIRE(moved.poses.size() == clip.poses.size());
-  for (std::size_t f = 0; f < clip.poses.size(); ++f)
-    CHECK((posed(rig.body, {}, moved.poses[f]) - mirrored(posed(plain.body, {}, moved_plain.poses[f]))).isZero(1e-5));
-}
-
-TEST_CASE("glTF: accessors that are stored sparsely are read", "[rig_gltf]") {
-  const Folder folder("gltf_sparse");
-  const BodyModel body = fake::body(4, 12, 0, false);
-  fake::GltfFile file = fake::gltf_of(body, some_motion(4, 3), body.joints);
-  const auto read = [&] { return read_gltf(fake::write(folder, "rig.glb", file.glb())).mesh.x; };
-  const Points still = read();
-  auto& mesh = file.json["meshes"][0];
-  const int count = file.json["accessors"][mesh["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()]["count"];
-  // As Blender writes shape keys: the rows that are not stored are 0.
-  const Eigen::VectorXi all = Eigen::VectorXi::LinSpaced(count, 0, count - 1);
-  const int rows = file.whole(all, "SCALAR", 5123),
-            values = file.numbers(Eigen::RowVector3d(0, 0, 8).replicate(count, 1), "VEC3");
-  const auto view_of = [&](int accessor) { return file.json["accessors"][accessor]["bufferView"]; };
-  auto sparse = nlohmann::ordered_json{{"count", count},
-                                       {"indices", {{"bufferView", view_of(rows)}, {"componentType", 5123}}},
-                                       {"values", {{"bufferView", view_of(values)}}}};
-  file.json["accessors"].push_back({{"componentType", 5126}, {"count", count}, {"type", "VEC3"}, {"sparse", sparse}});
-  const std::size_t target = file.json["accessors"].size() - 1;
-  mesh["primitives"][0]["targets"] = {{{"POSITION", target}}};
-  mesh["weights"] = {0.5};
-  CHECK((read().rowwise() - Eigen::RowVector3d(0, 0, 4) - still).isZero(1e-5));
-  file.json["accessors"][target].erase("sparse");
-  CHECK(read() == still);
-  file.json["accessors"][target]["sparse"] = sparse;
-  file.json["accessors"][target]["count"] = count - 1;
-  CHECK_THROWS_WITH(read(), Contains("target 0") && Contains(std::to_string(count - 1)));
-}
-
 TEST_CASE("glTF: the meshes of a body are chosen by name, and its file keeps them", "[rig_gltf]") {
   const Folder folder("gltf_meshes");
   const BodyModel body = fake::body(6, 40, 0, false);
