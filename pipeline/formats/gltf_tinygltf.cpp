@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/gltf_numbers_tinygltf.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/library_message.hpp"
@@ -22,7 +24,7 @@
 namespace selvedge {
 namespace {
 
-using Numbers = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Numbers = GltfNumbers;
 
 // A hexadecimal digit's value; -1 for anything else.
 int hex_value(char c) {
@@ -49,6 +51,33 @@ std::string_view json_of(std::string_view bytes) {
   std::uint32_t length = 0;
   std::memcpy(&length, bytes.data() + 12, sizeof length);
   return bytes.substr(header, length);
+}
+
+// A text file whose buffers within it are as the package reads them: of one media type, without white space.
+std::string with_plain_data(std::string bytes) {
+  constexpr std::string_view coded = ";base64,";
+  auto json = nlohmann::json::parse(bytes, nullptr, false);
+  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return bytes;
+  bool changed = false;
+  for (auto& buffer : json["buffers"]) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const std::string uri = buffer["uri"];
+    const std::size_t begin = uri.find(coded);
+    if (!uri.starts_with("data:") || begin == std::string::npos) continue;
+    std::string plain = uri.substr(begin + coded.size());
+    std::erase_if(plain, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+    plain = "data:application/octet-stream;base64," + plain;
+    changed = changed || plain != uri;
+    buffer["uri"] = std::move(plain);
+  }
+  return changed ? json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) : bytes;
+}
+
+// Whether a file that asks for this extension has the same surface and motion without it.
+bool leaves_shape(const std::string& extension) {
+  constexpr std::array<std::string_view, 6> parts = {
+      "KHR_mesh_quantization", "_materials_", "_texture_", "_lights_", "_xmp", "VRMC_"};
+  return std::ranges::any_of(parts, [&](std::string_view part) { return extension.find(part) != std::string::npos; });
 }
 
 // The files that a glTF file may open: its buffers, below its own folder, by the names that the package asks for. All
@@ -96,7 +125,7 @@ class BufferFiles {
 class Document {
  public:
   explicit Document(const std::filesystem::path& file) : file_(file) {
-    const std::string bytes = read_file(file, "glTF");
+    const std::string bytes = with_plain_data(read_file(file, "glTF"));
     refuse_too_many(static_cast<double>(bytes.size()), std::numeric_limits<int>::max(), "bytes", file.string(),
                     "export less of it");
     BufferFiles buffers(file, bytes);
@@ -107,7 +136,7 @@ class Document {
     bool good = false;
     const auto size = static_cast<unsigned>(bytes.size());
     try {
-      good = file.extension() == ".glb"
+      good = bytes.starts_with("glTF")
                  ? loader.LoadBinaryFromMemory(&model, &error, &warning,
                                                reinterpret_cast<const unsigned char*>(bytes.data()), size)
                  : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, "");
@@ -122,8 +151,7 @@ class Document {
       throw Error("is no glTF 2.0 that can be read" + (error.empty() ? "" : " (" + error + ")"), file.string(),
                   "export it anew, as .glb");
     for (const std::string& extension : model.extensionsRequired)
-      if (extension != "KHR_mesh_quantization" && extension.find("_materials_") == std::string::npos &&
-          extension.find("_texture_") == std::string::npos)
+      if (!leaves_shape(extension))
         fail("extensionsRequired", "asks for " + extension, "export without it, uncompressed");
   }
 
@@ -131,63 +159,18 @@ class Document {
     throw Error(what, file_.string() + ": " + part, cure);
   }
 
-  // An entry of one of the file's lists.
   template <class Entry>
   const Entry& entry(const std::vector<Entry>& list, int index, const std::string& part) const {
-    if (index < 0 || index >= std::ssize(list))
-      fail(part, "names entry " + std::to_string(index) + " of " + std::to_string(list.size()), "export it anew");
-    return list[index];
+    return gltf_entry(list, index, file_.string() + ": " + part);
   }
 
-  // The numbers of an accessor, one row per element. Throws Error if it does not have `columns` columns.
-  Numbers numbers(int index, int columns, const std::string& part) const {
-    const tinygltf::Accessor& accessor = entry(model.accessors, index, part);
-    if (accessor.sparse.isSparse) fail(part, "is stored sparsely", "export it without sparse accessors");
-    const int has = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-    if (has != columns)
-      fail(part, "has " + std::to_string(has) + " numbers a row, not " + std::to_string(columns), "export it anew");
-    const tinygltf::BufferView& view = entry(model.bufferViews, accessor.bufferView, part);
-    const std::vector<unsigned char>& bytes = entry(model.buffers, view.buffer, part).data;
-    const int stride = accessor.ByteStride(view);
-    const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
-    if (stride <= 0 || size <= 0) fail(part, "is of no known type", "export it anew");
-    const std::size_t row = static_cast<std::size_t>(size) * static_cast<std::size_t>(columns);
-    const auto fits = [](std::size_t begin, std::size_t length, std::size_t whole) {
-      return begin <= whole && length <= whole - begin;
-    };
-    if (accessor.count > bytes.size() || !fits(view.byteOffset, view.byteLength, bytes.size()) ||
-        (accessor.count > 0 &&
-         !fits(accessor.byteOffset, (accessor.count - 1) * static_cast<std::size_t>(stride) + row, view.byteLength)))
-      fail(part, "reaches beyond its buffer", "the file is cut short or damaged");
-    Numbers all(static_cast<Eigen::Index>(accessor.count), columns);
-    const unsigned char* begin = bytes.data() + view.byteOffset + accessor.byteOffset;
-    for (Eigen::Index i = 0; i < all.rows(); ++i)
-      for (int k = 0; k < columns; ++k)
-        all(i, k) = number(begin + i * stride + k * size, accessor.componentType, accessor.normalized, part);
-    if (!all.allFinite()) fail(part, "is not finite", "repair it where it was made");
-    return all;
+  Numbers numbers(int accessor, int columns, const std::string& part) const {
+    return gltf_numbers(model, accessor, columns, file_.string() + ": " + part);
   }
 
   tinygltf::Model model;
 
  private:
-  double number(const unsigned char* at, int type, bool normalized, const std::string& part) const {
-    const auto as = [&]<class Value>(Value value) {
-      std::memcpy(&value, at, sizeof value);
-      const double scale = normalized ? static_cast<double>(std::numeric_limits<Value>::max()) : 1;
-      return std::max(static_cast<double>(value) / scale, normalized ? -1.0 : std::numeric_limits<double>::lowest());
-    };
-    if (type == TINYGLTF_COMPONENT_TYPE_BYTE) return as(std::int8_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return as(std::uint8_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_SHORT) return as(std::int16_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return as(std::uint16_t{});
-    if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) return as(std::uint32_t{});
-    if (type != TINYGLTF_COMPONENT_TYPE_FLOAT) fail(part, "is of no known type", "export it anew");
-    float value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-  }
-
   std::filesystem::path file_;
 };
 
@@ -252,22 +235,36 @@ std::vector<int> read_nodes(const Document& file, std::vector<GltfNode>& nodes) 
   return place;
 }
 
-// The one skin that meshes use.
-int used_skin(const Document& file) {
-  std::optional<int> skin;
-  for (const tinygltf::Node& node : file.model.nodes) {
-    if (node.mesh < 0 || node.skin < 0) continue;
-    if (skin && *skin != node.skin)
-      file.fail("skins", "are several, used by different meshes", "export the body alone, with one armature");
-    skin = node.skin;
+// Adds the joints of a skin that the scene does not have yet. Returns the number of each of the skin's joints there.
+std::vector<int> add_skin(const Document& file, int number, const std::vector<int>& place, GltfScene& scene) {
+  const tinygltf::Skin& skin = file.entry(file.model.skins, number, "skins");
+  if (skin.joints.empty()) file.fail("skin, joints", "is empty", "export it anew");
+  std::vector<Eigen::Matrix4d> bind(skin.joints.size(), Eigen::Matrix4d::Identity());
+  if (skin.inverseBindMatrices >= 0) {
+    const Numbers all = file.numbers(skin.inverseBindMatrices, 16, "skin, inverseBindMatrices");
+    if (all.rows() < std::ssize(bind)) file.fail("skin, inverseBindMatrices", "are too few", "export it anew");
+    for (std::size_t j = 0; j < bind.size(); ++j)
+      bind[j] = Eigen::Map<const Eigen::Matrix4d>(all.row(static_cast<Eigen::Index>(j)).data());
   }
-  if (!skin) file.fail("skins", "is not used by any mesh", "export the body together with its armature and weights");
-  return *skin;
+  std::vector<int> numbers;
+  for (std::size_t j = 0; j < bind.size(); ++j) {
+    const int node = file.entry(place, skin.joints[j], "skin, joints");
+    numbers.push_back(static_cast<int>(std::ranges::find(scene.joints, node) - scene.joints.begin()));
+    const auto at = static_cast<std::size_t>(numbers.back());
+    if (at == scene.joints.size()) {
+      scene.joints.push_back(node);
+      scene.inverse_bind.push_back(bind[j]);
+    } else if (!scene.inverse_bind[at].isApprox(bind[j], 1e-4)) {
+      file.fail("skins", "bind the joint `" + scene.nodes[static_cast<std::size_t>(node)].name + "` in different poses",
+                "choose meshes of one skin, or export the body alone, with one armature");
+    }
+  }
+  return numbers;
 }
 
 // Adds joints and weights of vertices, in sets of four.
 void add_weights(const Document& file, const tinygltf::Primitive& primitive, const std::string& part, int first,
-                 int count, int joints, std::vector<Eigen::Triplet<double>>& all) {
+                 int count, const std::vector<int>& joints, std::vector<Eigen::Triplet<double>>& all) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
   for (int set = 0;; ++set) {
     const auto number = primitive.attributes.find("JOINTS_" + std::to_string(set)),
@@ -280,10 +277,10 @@ void add_weights(const Document& file, const tinygltf::Primitive& primitive, con
     for (int v = 0; v < count; ++v)
       for (int k = 0; k < 4; ++k) {
         if (w(v, k) <= 0) continue;
-        if (!(joint(v, k) >= 0 && joint(v, k) < joints))
-          file.fail(part + ", " + number->first, "names a joint beyond the skin's " + std::to_string(joints),
+        if (!(joint(v, k) >= 0 && joint(v, k) < static_cast<double>(joints.size())))
+          file.fail(part + ", " + number->first, "names a joint beyond the skin's " + std::to_string(joints.size()),
                     "export it anew");
-        all.emplace_back(first + v, static_cast<int>(joint(v, k)), w(v, k));
+        all.emplace_back(first + v, joints[static_cast<std::size_t>(joint(v, k))], w(v, k));
         sum[v] += w(v, k);
       }
   }
@@ -310,7 +307,8 @@ Numbers positions_of(const Document& file, const tinygltf::Primitive& primitive,
 }
 
 void add_primitive(const Document& file, const tinygltf::Primitive& primitive, const std::vector<double>& morphs,
-                   const std::string& part, int joints, std::vector<Eigen::Triplet<double>>& weights, Mesh& mesh) {
+                   const std::string& part, const std::vector<int>& joints,
+                   std::vector<Eigen::Triplet<double>>& weights, Mesh& mesh) {
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1)
     file.fail(part, "is not made of triangles", "export triangles");
   const Numbers x = positions_of(file, primitive, morphs, part);
@@ -337,21 +335,23 @@ const std::vector<double>& morph_weights(const tinygltf::Node& node, const tinyg
   return node.weights.empty() ? mesh.weights : node.weights;
 }
 
-// Adds the chosen meshes that a skin deforms, each as a group with its name. Returns the names of all that it deforms.
-std::vector<std::string> add_meshes(const Document& file, int skin, const NameChoice& choice, GltfScene& scene,
-                                    std::vector<Eigen::Triplet<double>>& weights) {
+// Adds the chosen meshes that skins deform, each as a group with its name, and the joints of these skins. Returns the
+// names of all meshes that skins deform.
+std::vector<std::string> add_meshes(const Document& file, const std::vector<int>& place, const NameChoice& choice,
+                                    GltfScene& scene, std::vector<Eigen::Triplet<double>>& weights) {
   std::vector<std::string> names;
+  std::map<int, std::vector<int>> joints;  // of each skin
   for (const tinygltf::Node& node : file.model.nodes) {
-    if (node.mesh < 0 || node.skin != skin) continue;
+    if (node.mesh < 0 || node.skin < 0) continue;
     const tinygltf::Mesh& mesh = file.entry(file.model.meshes, node.mesh, "node `" + node.name + "`");
     names.push_back(name_or(mesh.name.empty() ? node.name : mesh.name, "mesh", static_cast<std::size_t>(node.mesh)));
     const std::string& name = names.back();
     if (!choice.takes(name)) continue;
+    if (!joints.contains(node.skin)) joints[node.skin] = add_skin(file, node.skin, place, scene);
     const auto first = static_cast<int>(scene.mesh.x.rows());
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
       add_primitive(file, mesh.primitives[p], morph_weights(node, mesh),
-                    fmt::format("mesh `{}`, primitive {}", name, p), static_cast<int>(scene.joints.size()), weights,
-                    scene.mesh);
+                    fmt::format("mesh `{}`, primitive {}", name, p), joints[node.skin], weights, scene.mesh);
     std::vector<int>& group = group_named(scene.mesh.groups, name);
     for (int v = first; v < static_cast<int>(scene.mesh.x.rows()); ++v) group.push_back(v);
   }
@@ -416,19 +416,11 @@ GltfScene read_gltf(const std::filesystem::path& path, const NameChoice& choice)
   const Document file(path);
   GltfScene scene;
   const std::vector<int> place = read_nodes(file, scene.nodes);
-  const int number = used_skin(file);
-  const tinygltf::Skin& skin = file.entry(file.model.skins, number, "skins");
-  for (const int joint : skin.joints) scene.joints.push_back(file.entry(place, joint, "skin, joints"));
-  if (scene.joints.empty()) file.fail("skin, joints", "is empty", "export it anew");
-  const auto joints = static_cast<int>(scene.joints.size());
-  scene.inverse_bind.assign(scene.joints.size(), Eigen::Matrix4d::Identity());
-  if (skin.inverseBindMatrices >= 0) {
-    const Numbers all = file.numbers(skin.inverseBindMatrices, 16, "skin, inverseBindMatrices");
-    if (all.rows() < joints) file.fail("skin, inverseBindMatrices", "are too few", "export it anew");
-    for (int j = 0; j < joints; ++j) scene.inverse_bind[j] = Eigen::Map<const Eigen::Matrix4d>(all.data() + 16 * j);
-  }
   std::vector<Eigen::Triplet<double>> weights;
-  choice.check(add_meshes(file, number, choice, scene, weights), path.string());
+  const std::vector<std::string> names = add_meshes(file, place, choice, scene, weights);
+  if (names.empty())
+    file.fail("skins", "is not used by any mesh", "export the body together with its armature and weights");
+  choice.check(names, path.string());
   if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
   scene.weights = join_alike(weights, std::ssize(scene.joints), scene.mesh, path.filename().string());
   for (std::size_t a = 0; a < file.model.animations.size(); ++a)

@@ -40,10 +40,10 @@ struct GltfAnimation {
   bool morphs = false;  // it moves morph targets too, which no track has
 };
 
-// One skin of a glTF file and the meshes that it deforms.
+// The skins of a glTF file and the meshes that they deform.
 struct GltfScene {
   std::vector<GltfNode> nodes;                           // parents first
-  std::vector<int> joints;                               // of the skin: nodes
+  std::vector<int> joints;                               // of the skins: nodes
   std::vector<Eigen::Matrix4d> inverse_bind;             // of each joint: from the mesh's space to the joint's
   Mesh mesh;                                             // the deformed surface, as stored; its groups are the meshes
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;  // vertices x joints, rows sum to 1
@@ -52,10 +52,10 @@ struct GltfScene {
 
 // Reads a rigged mesh, glTF 2.0 (.glb, or .gltf with the files that it names beside it). Vertices that differ only in
 // texture or normal are joined, so that closed surfaces stay closed. Morph targets count with the weights that the file
-// gives them. Of other files only buffers are opened, only below
-// the file's own folder, and never images. Throws Error, naming the file and the part of it, for no skin or several
-// that are used, no triangles, compressed or sparse data, numbers outside of their buffers or not finite, weights that
-// are all zero, and a choice of meshes that the file lacks or that leaves none.
+// gives them. Meshes may have skins of their own that bind the same joints alike. Of other files only buffers are
+// opened, only below the file's own folder, and never images. Throws Error, naming the file and the part of it, for no
+// skin that is used, skins that bind a joint differently, no triangles, compressed data, numbers outside of their
+// buffers or not finite, weights that are all zero, and a choice of meshes that the file lacks or that leaves none.
 GltfScene read_gltf(const std::filesystem::path&, const NameChoice& = {});
 
 }  // namespace selvedge

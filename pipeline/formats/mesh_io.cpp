@@ -10,6 +10,7 @@
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
 #include "pipeline/formats/polygon.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
 
@@ -17,12 +18,6 @@ namespace selvedge {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 void keep_rows(Triangles& triangles, const std::vector<int>& kept) {
   if (triangles.rows() == 0) return;
@@ -81,7 +76,7 @@ Mesh read_mesh(const fs::path& path) {
   const std::string extension = lower_extension(path), name = path.string();
   if (extension != ".obj" && extension != ".ply")
     throw Error("has an extension that no mesh reader knows", name, "known: .obj, .ply");
-  const std::string text = read_text_file(path, "mesh");
+  const std::string text = extension == ".obj" ? read_text_file(path, "mesh") : read_headed_file(path, "mesh");
   if (text.empty()) throw Error("is empty", name, "name a mesh file with vertices and faces");
   Mesh mesh = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);
   if (mesh.x.rows() == 0) throw Error("has no vertices", name, "name a mesh file with vertices and faces");

@@ -62,6 +62,7 @@ struct Reader {
   std::string_view text;
   std::size_t at = 0;
   int line = 0;
+  char line_end = '\n';  // or a carriage return, in files of old Macs
   Encoding encoding = Encoding::ascii;
   std::string place;  // in binary data
 
@@ -73,7 +74,7 @@ struct Reader {
 
 std::string_view next_line(Reader& r) {
   if (r.left() == 0) r.fail("ends too early");
-  const std::size_t end = std::min(r.text.find('\n', r.at), r.text.size());
+  const std::size_t end = std::min(r.text.find(r.line_end, r.at), r.text.size());
   std::string_view line = r.text.substr(r.at, end - r.at);
   r.at = std::min(end + 1, r.text.size());
   ++r.line;
@@ -155,7 +156,7 @@ double read_binary(Reader& r, const Type& type) {
 
 double read_ascii(Reader& r) {
   std::size_t begin = r.at;
-  while (begin < r.text.size() && std::strchr(" \t\r\n", r.text[begin])) r.line += r.text[begin++] == '\n';
+  while (begin < r.text.size() && std::strchr(" \t\r\n", r.text[begin])) r.line += r.text[begin++] == r.line_end;
   const std::size_t end = std::min(r.text.find_first_of(" \t\r\n", begin), r.text.size());
   if (end == begin) r.fail("ends too early");
   const std::string_view word = r.text.substr(begin, end - begin);
@@ -265,6 +266,8 @@ Mesh parse_ply(std::string_view text, const std::string& name) {
   Reader r;
   r.name = name;
   r.text = text;
+  const std::size_t end = text.find('\r');  // data may follow the header: its first line decides
+  if (end < text.find('\n') && text.substr(end, 2) != "\r\n") r.line_end = '\r';
   const std::vector<Element> elements = read_header(r);
   ++r.line;  // values of a text file begin here
   Mesh mesh;

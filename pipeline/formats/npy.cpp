@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/half_float.hpp"
 
 namespace selvedge {
 namespace {
@@ -20,6 +21,11 @@ struct Header {
   std::vector<std::size_t> shape;
   std::size_t count = 1;  // of values
   std::size_t begin = 0;  // byte offset of the values
+};
+
+// A float of 16 bits, as it is stored.
+struct Half {
+  std::uint16_t word = 0;
 };
 
 constexpr std::string_view magic = "\x93NUMPY";
@@ -184,6 +190,7 @@ bool with_number_type(const std::string& type, const Use& use) {
   const std::string plain = type.empty() ? "" : type.substr(type.find_first_not_of("<|=") == 0 ? 0 : 1);
   if (plain == "f8") return use(double{}), true;
   if (plain == "f4") return use(float{}), true;
+  if (plain == "f2") return use(Half{}), true;
   if (plain == "i8") return use(std::int64_t{}), true;
   if (plain == "i4") return use(std::int32_t{}), true;
   if (plain == "i2") return use(std::int16_t{}), true;
@@ -205,7 +212,10 @@ NpyArray<T> read_array(std::string_view bytes, const NpyPlace& place, const Conv
     array = in_c_order<T>(header, [&](std::size_t i) {
       Stored value;
       std::memcpy(&value, values.data() + i * sizeof value, sizeof value);
-      return convert(value);
+      if constexpr (std::is_same_v<Stored, Half>)
+        return convert(half_value(value.word));
+      else
+        return convert(value);
     });
   });
   if (!known)

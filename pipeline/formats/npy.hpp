@@ -27,7 +27,7 @@ struct NpyPlace {
 // little-endian. Throws Error for bytes that are no such file or do not have the length that the shape says, for
 // pickled Python objects (which are never read), and for values of another kind.
 
-// Floats of 32 and 64 bits, integers and booleans.
+// Floats of 16, 32 and 64 bits, integers and booleans.
 NpyArray<double> npy_numbers(std::string_view bytes, const NpyPlace&);
 
 // Integers, booleans, and floats whose values are whole.

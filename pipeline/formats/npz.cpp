@@ -11,8 +11,12 @@ namespace {
 constexpr std::string_view extension = ".npy";
 
 const ZipForm npz_form{
-    ".npz", "is it an .npz file, and whole? A .pkl or .npy file must be saved as .npz first, with numpy.savez",
-    "save the arrays with numpy.savez or numpy.savez_compressed", true, most_numbers};
+    ".npz",
+    "is it an .npz file, and whole? A .pkl or .npy file must be saved as .npz first, with numpy.savez",
+    "save the arrays with numpy.savez or numpy.savez_compressed",
+    true,
+    most_numbers,
+    true};
 
 }  // namespace
 

@@ -10,7 +10,9 @@
 #include <string>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/half_float.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -41,14 +43,7 @@ struct CacheBytes {
     return value;
   }
 
-  double coordinate() {
-    if (!half) return next<float>();
-    const auto word = next<std::uint16_t>();  // IEEE 754 binary16
-    const int exponent = word >> 10 & 31, digits = word & 1023;
-    const double size = exponent == 31 ? (digits ? NAN : INFINITY)
-                                       : std::ldexp(exponent ? 1024 + digits : digits, (exponent ? exponent : 1) - 25);
-    return word >> 15 ? -size : size;
-  }
+  double coordinate() { return half ? half_value(next<std::uint16_t>()) : next<float>(); }
 
   void check_size(std::int32_t points, std::int32_t frames, std::size_t head) const {
     if (points < 1 || frames < 1)
@@ -135,7 +130,7 @@ PointCache read_mdd(CacheBytes file) {
 }  // namespace
 
 PointCache read_point_cache(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = lower_extension(path);
   CacheBytes file{path.string(), read_file(path, "point cache"), extension == ".mdd", extension == ".pc16"};
   if (extension == ".mdd") return read_mdd(std::move(file));
   if (extension == ".pc2" || extension == ".pc16") return read_pc2(std::move(file));

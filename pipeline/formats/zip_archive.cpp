@@ -45,8 +45,10 @@ ZipArchive::ZipArchive(const std::filesystem::path& path, const ZipForm& form)
   opened_->file_size = std::filesystem::file_size(path, problem);
   if (problem) throw Error("cannot be opened (" + problem.message() + ")", path.string(), "check the path");
   int code = 0;
-  zip_t* const zip = zip_open(path.c_str(), ZIP_RDONLY, &code);
+  zip_t* const zip = zip_open(path.c_str(), ZIP_RDONLY | (form.consistent ? ZIP_CHECKCONS : 0), &code);
   opened_->zip.reset(zip);
+  if (!zip && code == ZIP_ER_INCONS)
+    throw Error("has a directory and entries that contradict each other", path.string(), damaged_cure());
   if (!zip) {
     zip_error_t error;
     zip_error_init_with_code(&error, code);

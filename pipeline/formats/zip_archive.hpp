@@ -15,6 +15,7 @@ struct ZipForm {
   std::string how_made;  // cure for an entry of another kind
   bool compressed;       // whether entries may be compressed, by deflate
   std::int64_t most;     // bytes of an entry
+  bool consistent;       // whether what stands before each entry must say what the directory says
 };
 
 // A ZIP archive, by libzip. Sizes that it claims are compared with the file's before memory is taken. Throws Error for

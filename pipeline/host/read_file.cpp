@@ -23,13 +23,25 @@ std::string read_file(const std::filesystem::path& path, const std::string& noun
   return text.str();
 }
 
-std::string read_text_file(const std::filesystem::path& path, const std::string& noun) {
+std::string read_headed_file(const std::filesystem::path& path, const std::string& noun) {
   using namespace std::literals;
   std::string text = read_file(path, noun);
   for (const std::string_view mark : {"\xFF\xFE"sv, "\xFE\xFF"sv, "\0\0\xFE\xFF"sv})
     if (text.starts_with(mark))
       throw Error("is written in UTF-16 or UTF-32", path.string(), "save the " + noun + " file as UTF-8");
   if (text.starts_with("\xEF\xBB\xBF"sv)) text.erase(0, 3);
+  return text;
+}
+
+std::string read_text_file(const std::filesystem::path& path, const std::string& noun) {
+  std::string text = read_headed_file(path, noun);
+  for (std::size_t begin = text.find('\r'); begin != std::string::npos; begin = text.find('\r', begin)) {
+    const std::size_t end = std::min(text.find_first_not_of('\r', begin), text.size());
+    if (end == text.size() || text[end] != '\n')
+      std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end),
+                '\n');
+    begin = end;
+  }
   return text;
 }
 

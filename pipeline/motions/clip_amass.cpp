@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -95,6 +96,19 @@ void warn_of_length(const Npz& npz, Index frames, double fps, std::vector<std::s
       npz.place("mocap_time_length").text(), length.values.empty() ? 0 : length.values[0], frames, fps, is));
 }
 
+// No joint turns twice. The root, the first of each frame's, may: some files count its turns on.
+void warn_of_degrees(const Npz& npz, const std::string& field, const Points& rotations, Index joints,
+                     std::vector<std::string>& warnings) {
+  double most = 0;
+  for (Index k = 0; k < rotations.rows(); ++k)
+    if (k % joints != 0) most = std::max(most, rotations.row(k).norm());
+  if (most > 4 * std::numbers::pi)
+    warnings.push_back(
+        fmt::format("{} turns a joint by {:.3g} rad: are the file's angles in degrees? They are taken as "
+                    "radians",
+                    npz.place(field).text(), most));
+}
+
 }  // namespace
 
 Eigen::VectorXd read_amass_shape(const std::filesystem::path& path, std::vector<std::string>& warnings, int most) {
@@ -127,6 +141,7 @@ Clip read_amass(const std::filesystem::path& path, const Vec3& pelvis, std::vect
           Eigen::Map<const Points>(values.values.data() + f * 3 * part.joints, part.joints, 3);
     first += part.joints;
   }
+  warn_of_degrees(npz, parts.back().field, rotations, joints, warnings);
 
   std::vector<std::string> names = smpl_joint_names(static_cast<int>(joints == 22 ? 24 : joints));
   names.resize(static_cast<std::size_t>(joints));

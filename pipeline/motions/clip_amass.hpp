@@ -17,7 +17,7 @@ Eigen::VectorXd read_amass_shape(const std::filesystem::path&, std::vector<std::
 // The motion at the file's frame rate, by the names of `smpl_joint_names`, with the shape as above. Files are Z up:
 // (x, y, z) becomes (x, z, -y), for which the root's joint of the shaped body in the zero pose is needed (`pelvis`, the
 // first row of `joint_positions`), because bodies turn about it. Warns if the file's length (mocap_time_length) is not
-// that of the frames. Throws Error with file and field.
+// that of the frames, and of rotations that only degrees could mean. Throws Error with file and field.
 Clip read_amass(const std::filesystem::path&, const Vec3& pelvis, std::vector<std::string>& warnings, int shapes = 10);
 
 }  // namespace selvedge

@@ -157,8 +157,9 @@ void read_motion(Reader& r, BvhFile& bvh) {
   r.expect("Time:");
   const int time_line = r.line();
   const double seconds = r.number("the time of a frame");
-  if (!(seconds >= 1e-6))
-    r.fail(time_line, fmt::format("the time of a frame is {:g}", seconds), "give seconds, from 1e-6");
+  constexpr double longest = 1;  // what is longer is mostly meant in milliseconds
+  if (!(seconds >= 1e-6 && seconds <= longest))
+    r.fail(time_line, fmt::format("the time of a frame is {:g}", seconds), "give seconds, from 1e-6 to 1");
   bvh.fps = 1 / seconds;
   if (std::abs(bvh.fps / std::round(bvh.fps) - 1) < 2e-4) bvh.fps = std::round(bvh.fps);  // 0.041667 is 24
   const std::size_t left = r.tokens.size() - r.next,

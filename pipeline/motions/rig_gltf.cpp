@@ -35,12 +35,12 @@ std::vector<Matrix4d> global_transforms(const std::vector<GltfNode>& nodes) {
   return all;
 }
 
-// The scale of a similarity transform; 0 if it is none.
+// The scale of a similarity transform, below 0 if it mirrors; 0 if it is none.
 double size_of(const Matrix4d& m) {
   const Mat3 linear = m.topLeftCorner<3, 3>();
-  const double size = std::cbrt(std::abs(linear.determinant()));
-  if (!(size > 0) || !std::isfinite(size)) return 0;
-  return (linear.transpose() * linear / (size * size)).isIdentity(1e-3) && linear.determinant() > 0 ? size : 0;
+  const double size = std::cbrt(linear.determinant());
+  if (size == 0 || !std::isfinite(size)) return 0;
+  return (linear.transpose() * linear / (size * size)).isIdentity(1e-3) ? size : 0;
 }
 
 // The rotation of a polar decomposition; `m` keeps orientation.
@@ -72,7 +72,8 @@ std::vector<int> kept_joints(const GltfScene& scene, const std::vector<int>& par
   const Eigen::VectorXd used = scene.weights.transpose() * Eigen::VectorXd::Ones(scene.weights.rows());
   std::vector<int> roots = children(-1);
   if (roots.size() != 1)
-    throw Error(fmt::format("has {} roots", roots.size()), file + ": skin, joints", "give the armature one root joint");
+    throw Error(fmt::format("has {} roots", roots.size()), file + ": skin, joints",
+                "give the armature one root joint, or choose meshes that follow one armature");
   while (used[roots[0]] == 0 && children(roots[0]).size() == 1) roots = children(roots[0]);
   std::vector<int> order = roots;
   for (std::size_t k = 0; k < order.size(); ++k)
@@ -194,13 +195,14 @@ GltfRig read_gltf_rig(const std::filesystem::path& path, const NameChoice& choic
   const auto root = static_cast<std::size_t>(rig.joints[0]);
   rig.placed = global_transforms(scene.nodes)[scene.joints[root]] * scene.inverse_bind[root];
   if (size_of(rig.placed) == 0)
-    throw Error("is scaled unevenly or mirrored", rig.file + ": skin", "apply the armature's scale before the export");
+    throw Error("is scaled unevenly", rig.file + ": skin", "apply the armature's scale before the export");
 
   BodyModel& body = rig.body;
   body.name = path.stem().string();
   const Eigen::Matrix<double, 3, 4> placed = rig.placed.topRows<3>();
   body.skin.rest = scene.mesh.x.rowwise().homogeneous() * placed.transpose();
   body.skin.triangles = scene.mesh.triangles;
+  if (size_of(rig.placed) < 0) body.skin.triangles.col(1).swap(body.skin.triangles.col(2));  // it mirrors the body
   body.meshes = scene.mesh.groups;
   std::vector<int> place(scene.joints.size(), 0);  // the root for joints that are left out
   std::vector<std::string> names;

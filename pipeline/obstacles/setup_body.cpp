@@ -21,6 +21,7 @@
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/kept_rows.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/motions/clip_amass.hpp"
 #include "pipeline/motions/clip_bvh.hpp"
 #include "pipeline/motions/clip_procedural.hpp"
@@ -34,13 +35,16 @@ namespace {
 
 constexpr double gltf_frames = 60;  // frames per second in scenes: glTF files have none
 
-bool is_gltf(const std::filesystem::path& name) { return name.extension() == ".glb" || name.extension() == ".gltf"; }
+bool is_gltf(const std::filesystem::path& name) {
+  const std::string extension = lower_extension(name);
+  return extension == ".glb" || extension == ".gltf";
+}
 
 BodyModel read_model(const Config& model, const std::filesystem::path& folder) {
   if (model.text() == "mannequin") return kept_mannequin(cache_folder());
   const std::filesystem::path file = existing_path(model, folder);
-  if (file.extension() == ".npz") return read_smpl(file);
-  if (file.extension() == ".h5") return read_body(file);
+  if (lower_extension(file) == ".npz") return read_smpl(file);
+  if (lower_extension(file) == ".h5") return read_body(file);
   if (is_gltf(file)) return read_gltf_rig(file).body;
   model.fail("is neither `mannequin` nor a .npz, .h5, .glb or .gltf file", "convert the body as docs/bodies.md says");
 }
@@ -72,11 +76,11 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
   const Config& clip = section["clip"];
   const std::filesystem::path name(clip.text());
   for (const std::string key : {"joints", "rest_frame"})
-    if (section[key].given && name.extension() != ".bvh")
+    if (section[key].given && lower_extension(name) != ".bvh")
       section[key].fail("is given for a clip that is no .bvh file", "leave it out");
-  if (name.extension() == ".npz")
+  if (lower_extension(name) == ".npz")
     return read_amass(existing_path(clip, folder), row(who.joints, smpl::pelvis), warnings);
-  if (name.extension() == ".bvh") {
+  if (lower_extension(name) == ".bvh") {
     BvhOptions options;
     options.floor = who.floor;
     if (const Config& names = section["joints"]; names.given)
@@ -206,7 +210,7 @@ void perform_clip(Clip made, const Config& section, const Config& what, Performa
 
 void perform(const Config& section, const std::filesystem::path& folder, Performance& who) {
   const Config &clip = section["clip"], &shape = section["shape"];
-  const bool of_smpl = std::filesystem::path(section["model"].text()).extension() == ".npz";
+  const bool of_smpl = lower_extension(section["model"].text()) == ".npz";
   who.shape.resize(0);
   who.given_shape.resize(0);
   who.clip = {};
@@ -214,7 +218,7 @@ void perform(const Config& section, const std::filesystem::path& folder, Perform
   if (shape.given)
     who.shape = who.given_shape =
         Eigen::Map<const Eigen::VectorXd>(shape.numbers.data(), static_cast<Eigen::Index>(shape.numbers.size()));
-  else if (of_smpl && clip.given && std::filesystem::path(clip.text()).extension() == ".npz")
+  else if (of_smpl && clip.given && lower_extension(clip.text()) == ".npz")
     who.shape = read_amass_shape(existing_path(clip, folder), who.warnings);
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",

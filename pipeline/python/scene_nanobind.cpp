@@ -155,8 +155,14 @@ void SceneObject::save(const std::filesystem::path& file) {
 void SceneObject::restore(const std::filesystem::path& file) {
   must_rest();
   ensure_begun();
-  Checkpoint saved = read_checkpoint(file);
-  check_fits(file, saved.state, setup_.scene);
+  if (!std::filesystem::exists(file)) throw Error("is not there", file.string(), "name a file that `save` wrote");
+  Checkpoint saved;
+  try {
+    saved = read_checkpoint(file);
+    check_fits(file, saved.state, setup_.scene);
+  } catch (const Error& error) {
+    throw Error(error.problem(), error.where(), "restore a state that `save` wrote of this scene");
+  }
   if (const auto problem = misfit(saved.state.memory, setup_.scene))
     throw Error(*problem, file.string(), "restore it into the scene that it was saved of");
   // Obstacles of a scene from arrays may have been moved, so that its hash is not the same.

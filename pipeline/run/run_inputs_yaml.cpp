@@ -11,6 +11,7 @@
 #include "pipeline/host/bytes_of.hpp"
 #include "pipeline/host/json_text.hpp"
 #include "pipeline/host/kept_rows.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 
 namespace selvedge {
@@ -68,7 +69,7 @@ std::vector<fs::path> named_files(const std::string& text, const fs::path& folde
   }
   if (path.filename().string().find('%') != std::string::npos) return numbered_files(path);
   std::vector<fs::path> files{path};
-  if (path.extension() == ".gltf")
+  if (lower_extension(path) == ".gltf")
     for (fs::path& buffer : gltf_buffers(path)) files.push_back(std::move(buffer));
   return files;
 }

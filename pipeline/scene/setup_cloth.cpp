@@ -7,6 +7,7 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
@@ -116,7 +117,7 @@ void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warning
 void warn_of_seams(const Config& garment, const ClothPart& part, std::vector<std::string>& warnings) {
   const int joined = weldable(part.rest, part.mesh.triangles).joined;
   if (joined == 0) return;
-  const bool is_mesh = std::filesystem::path(garment["file"].text()).extension() != ".h5";
+  const bool is_mesh = lower_extension(garment["file"].text()) != ".h5";
   warnings.push_back("cloth `" + part.name + "`: " +
                      unwelded_text(joined, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
 }

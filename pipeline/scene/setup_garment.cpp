@@ -10,6 +10,7 @@
 #include "pipeline/garments/mesh_frame.hpp"
 #include "pipeline/garments/outfit.hpp"
 #include "pipeline/garments/worn_part.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
@@ -93,7 +94,9 @@ std::vector<Garment> read_outfit(const Config& section, const std::filesystem::p
             "outfits: " + joined(known) + suggestion(name.text(), known));
 }
 
-bool is_mesh(const std::filesystem::path& name) { return name.extension() == ".obj" || name.extension() == ".ply"; }
+bool is_mesh(const std::filesystem::path& name) {
+  return lower_extension(name) == ".obj" || lower_extension(name) == ".ply";
+}
 
 // What to do with a mesh that is not on the body as its section says.
 std::string frame_cure(const Mesh& mesh, const Points& body, const Triangles& body_triangles) {
@@ -154,7 +157,7 @@ Garment read_file(const Config& section, const std::filesystem::path& folder, co
   const Config& file = section["file"];
   const std::filesystem::path path = existing_path(file, folder);
   if (is_mesh(path)) return read_dressed(section, path, who, warnings);
-  if (path.extension() != ".h5")
+  if (lower_extension(path) != ".h5")
     file.fail("is no .h5, .obj or .ply file", "`selvedge dress` makes a garment of a mesh that a body wears");
   if (read_unit(section["unit"]) != 1 || section["up"].text() != "y" || section["fit"].text() != "loose")
     file.fail("is a garment file, which has its own unit, axes and fit", "leave `unit`, `up` and `fit` out");

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/require_file.hpp"
+#include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
 namespace {
@@ -113,9 +113,7 @@ PairKind kind_of(const std::filesystem::path& file) {
 
 std::vector<CcdQuery> read_ccd_queries(const std::filesystem::path& file) {
   const PairKind kind = kind_of(file);
-  require_file(file, "query");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error("cannot be read", file.string(), "give files of queries, such as FOLDER/edge-edge/*.csv");
+  std::istringstream stream(read_text_file(file, "query"));
   std::vector<CcdQuery> queries;
   std::vector<Row> rows;
   Place place{file};

@@ -17,6 +17,7 @@
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/host/label_lines.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/motions/rig_gltf.hpp"
 #include "pipeline/motions/t_pose.hpp"
@@ -44,7 +45,7 @@ BodyModel read_mesh_body(const BodyRequest& request) {
 }
 
 BodyModel read(const BodyRequest& request, BodyReport& report) {
-  const std::string extension = request.file.extension().string();
+  const std::string extension = lower_extension(request.file);
   if (extension == ".glb" || extension == ".gltf") {
     if (request.unit != "m")
       throw Error("is given for glTF, which is in metres", "--unit " + request.unit, "leave it out");

@@ -14,6 +14,7 @@
 #include "pipeline/garments/garment_places.hpp"
 #include "pipeline/hdf5/hdf5_fields.hpp"
 #include "pipeline/hdf5/trajectory_hdf5.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/measures/motion_measures.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/patterns/stand_round.hpp"
@@ -28,7 +29,9 @@ namespace {
 // A stitch with a larger gap did not close [m]. In good garments gaps were at most 0.2 mm.
 constexpr double open_gap = 5e-3;
 
-bool is_mesh(const std::filesystem::path& file) { return file.extension() == ".obj" || file.extension() == ".ply"; }
+bool is_mesh(const std::filesystem::path& file) {
+  return lower_extension(file) == ".obj" || lower_extension(file) == ".ply";
+}
 
 // A body with one joint that carries all of it.
 BodyModel body_of_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {

@@ -63,6 +63,7 @@ function firstTheme(options) {
 
 function showTransport(player, {times, last}) {
   const slider = element("frame");
+  element("transport").hidden = last === 0;  // one frame, as of a fit, has nothing to play
   slider.max = last;
   slider.value = player.frame;
   slider.style.setProperty("--played", `${last ? (100 * player.frame) / last : 0}%`);

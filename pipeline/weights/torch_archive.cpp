@@ -17,8 +17,12 @@ constexpr std::int64_t largest_entry = std::int64_t{256} << 20;
 constexpr std::uint64_t most_read = std::uint64_t{1} << 30;
 
 const ZipForm torch_form{
-    "weights", "is it a file of torch.save, and whole? Load and save older ones (before torch 1.6) again with a newer",
-    "save the weights with torch.save, which neither compresses nor encrypts", false, largest_entry};
+    "weights",
+    "is it a file of torch.save, and whole? Load and save older ones (before torch 1.6) again with a newer",
+    "save the weights with torch.save, which neither compresses nor encrypts",
+    false,
+    largest_entry,
+    false};
 
 // The folder inside of the archive, which torch names after the saved file.
 std::string archive_stem(const std::vector<std::string>& names, const std::string& where) {

@@ -50,6 +50,28 @@ def falling(height=0.3, n=6):
     return scene
 
 
+@pytest.mark.parametrize("frames", [3, -1, [0, 2], np.arange(3), slice(0, None, 0), slice("a", None), "all"])
+def test_frames_of_a_trajectory_are_a_slice(frames, run):
+    with pytest.raises(selvedge.Error, match="read_trajectory: frames is (.|\n)*give a slice"):
+        selvedge.read_trajectory(run, frames=frames)
+    assert len(selvedge.read_trajectory(run, slice(-2, None))["x"]) == 2
+
+
+def test_errors_name_arguments_and_no_flags(run, scene_file, tmp_path):
+    cases = [
+        (lambda: selvedge.fit(run, frame=99), "`frame`: frame 99"),
+        (lambda: selvedge.fit(run), "`scene`|`body`"),
+        (lambda: selvedge.export(run, "fbx", tmp_path / "x"), "`format`: unknown format"),
+        (lambda: selvedge.plan(scene_file, ["run.frames"]), "`overrides` run.frames.*\n.*example `overrides` run"),
+        (lambda: selvedge.Scene(scene_file).restore(tmp_path / "none.h5"), "is not there\n.*`save`"),
+        (lambda: falling().restore(run / "run.h5"), "restore a state that `save` wrote"),
+    ]
+    for call, words in cases:
+        with pytest.raises(selvedge.Error, match=words) as refused:
+            call()
+        assert "--" not in str(refused.value)
+
+
 def test_a_run_is_one_array_with_what_was_in_the_scene(scene_file, tmp_path):
     scene = selvedge.Scene(scene_file)
     seen, obstacles = [scene.x.copy()], [scene.obstacles]

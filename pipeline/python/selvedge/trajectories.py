@@ -77,8 +77,7 @@ def read_trajectory(file: Path, frames: slice | None = None, into: Path | None =
     frames x n [Pa], of float32, not a number where they are not known; obstacles, of each its name, its triangles and
     x, frames x k x 3 [m]; reports, of each frame a dict by the names of docs/files.md."""
     contents = trajectory_contents(file)
-    count = contents["frame_count"]
-    numbers = list(range(count)) if frames is None else list(range(count))[frames]
+    numbers = _numbers(contents["frame_count"], frames)
     x = _array(into, (len(numbers), len(contents["rest"]), 3))
     bodies = [
         np.empty((len(x) if body["moving"] else min(len(x), 1), body["vertex_count"], 3), dtype=np.float32)
@@ -108,6 +107,15 @@ def read_trajectory(file: Path, frames: slice | None = None, into: Path | None =
         obstacles=obstacles,
         reports=reports,
     )
+
+
+def _numbers(count: int, frames: slice | None) -> list[int]:
+    try:
+        if frames is None or isinstance(frames, slice):
+            return list(range(count)[slice(None) if frames is None else frames])
+    except (TypeError, ValueError):  # not whole numbers, or a step of 0
+        pass
+    raise Error(f"read_trajectory: frames is {frames!r}\n  cure: give a slice: slice(0, None, 10) is every tenth frame")
 
 
 def _counted(count: int, noun: str) -> str:

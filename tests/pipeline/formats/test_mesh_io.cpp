@@ -106,6 +106,35 @@ TEST_CASE("Byte order marks are read over, unknown words counted, and what no OB
   CHECK_THAT(odd.warnings[1], Contains("1 line begins with") && Contains("`vertex`"));
 }
 
+TEST_CASE("Files whose lines end in carriage returns alone are read as others", "[mesh_io]") {
+  const auto with_returns = [](std::string text) {
+    std::ranges::replace(text, '\n', '\r');
+    return text;
+  };
+  const std::string faces = "# corners\n" + triangle + "vn 0 0 1\nv 1 1 0\nf 1 2 3\nf 2 4 3\n";
+  const Folder folder("returns");
+  const auto path = fake::write(folder, "a.obj", with_returns(faces));
+  const Mesh plain = read("b.obj", faces), mesh = read_mesh(path);
+  CHECK(mesh.x == plain.x);
+  CHECK(mesh.triangles == plain.triangles);
+  std::vector<std::string> warnings;
+  write_moved(path, folder.path / "moved.obj", 2 * mesh.x, mesh, warnings);
+  CHECK(read_mesh(folder.path / "moved.obj").x == 2 * plain.x);
+  CHECK_THAT(refusal("a.obj", with_returns(triangle + "f 1 2 4\n")), Contains("a.obj:4"));
+
+  std::string text = ascii_ply;
+  std::erase(text, '\r');
+  CHECK(read("a.ply", with_returns(text)).x == read("a.ply", text).x);
+  CHECK_THAT(refusal("a.ply", with_returns(text + "4 0 x")) + refusal("a.ply", with_returns("ply\nformat odd\n")),
+             Contains("a.ply:2"));
+  // Values keep their bytes, also those that read as ends of lines.
+  text = binary_ply(false);
+  const std::size_t values = text.find("end_header\n") + 11;
+  std::string returns = with_returns(text.substr(0, values)) + text.substr(values);
+  for (std::string* each : {&text, &returns}) (*each)[values + 1] = '\n', (*each)[values + 2] = '\r';
+  CHECK(read("a.ply", returns).x == read("a.ply", text).x);
+}
+
 TEST_CASE("Vertices at one place are counted, and joined on request", "[mesh_io]") {
   // Two triangles that share an edge in space alone, with a rounding between them, and one that loses its area.
   Mesh mesh = read("a.obj", triangle +

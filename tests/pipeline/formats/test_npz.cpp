@@ -109,6 +109,29 @@ TEST_CASE("every type of number is read, stored and compressed, in all versions 
   }
 }
 
+TEST_CASE("floats of 16 bits are read") {
+  // 1, -2, the largest, the least above 0, infinity: words by IEEE 754.
+  const std::string words("\x00\x3C\x00\xC0\xFF\x7B\x01\x00\x00\x7C", 10);
+  const std::string array = fake::npy_of("'<f2'", false, "(5,)", words);
+  CHECK(npy_numbers(array, {"a.npz", "x"}).values ==
+        std::vector<double>{1, -2, 65504, std::ldexp(1, -24), std::numeric_limits<double>::infinity()});
+  const std::string whole = fake::npy_of("'<f2'", false, "(2,)", words.substr(0, 4));
+  CHECK(npy_integers(whole, {"a.npz", "x"}).values == std::vector<std::int64_t>{1, -2});
+  CHECK(has(refusal([&] { npy_integers(array, {"a.npz", "x"}); }), "which is no index"));
+}
+
+TEST_CASE("an archive whose entry has another name than its directory says is refused") {
+  const fake::Folder folder("npz_names");
+  const auto path = folder.path / "a.npz";
+  fake::write_npz(path, {{"x", fake::npy<double>({1}, {1})}});
+  CHECK(Npz(path).has("x"));
+  std::string bytes = fake::whole(path);
+  bytes.replace(bytes.find("x.npy"), 1, "y");  // the entry stands before the directory
+  const std::string error = refusal([&] { Npz(fake::write(folder, "b.npz", bytes)); });
+  CHECK(has(error, "b.npz"));
+  CHECK(has(error, "contradict"));
+}
+
 TEST_CASE("Fortran order comes out as C order") {
   std::vector<double> c_order, fortran_order(24);
   for (std::size_t i = 0; i < 2; ++i)
@@ -203,7 +226,8 @@ TEST_CASE("an array that claims more than is read is refused before memory is ta
   const std::size_t entry = bytes.rfind("PK\x01\x02");
   REQUIRE(entry != std::string::npos);
   const std::uint32_t claimed = 300'000'000;
-  std::memcpy(bytes.data() + entry + 24, &claimed, sizeof claimed);
+  std::memcpy(bytes.data() + entry + 24, &claimed, sizeof claimed);  // in the directory, and before the entry
+  std::memcpy(bytes.data() + 22, &claimed, sizeof claimed);
   const std::string message = refusal([&] { Npz(fake::write(folder, "b.npz", bytes)).numbers("x"); });
   INFO(message);
   CHECK(has(message, "b.npz: x"));

@@ -42,4 +42,14 @@ TEST_CASE("files: a pipe or a device is refused, since reading it might never en
   CHECK_THROWS_WITH(read_setup(scene), refused);
 }
 
+TEST_CASE("files: a carriage return ends a line of text, alone or before a line feed", "[read_file]") {
+  const Folder folder("lines");
+  const std::string mixed = "one\rtwo\r\nthree\r\r\nfour\r\rfive\r";
+  CHECK(read_text_file(fake::write(folder, "a.txt", mixed), "text") == "one\ntwo\r\nthree\r\r\nfour\n\nfive\n");
+  CHECK(read_headed_file(fake::write(folder, "a.txt", mixed), "text") == mixed);
+  const auto scene =
+      fake::write(folder, "scene.yaml", "gravity: [0, -9.81, 0] # as on Earth\rcloths: [{rectangle: {}}]\rrun: {x: 1}");
+  CHECK_THROWS_WITH(read_setup(scene), Contains("scene.yaml:3"));
+}
+
 }  // namespace selvedge::test_read_file

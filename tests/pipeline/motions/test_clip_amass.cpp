@@ -82,6 +82,23 @@ TEST_CASE("clip_amass: SMPL+H files in both precisions", "[clip]") {
   check(smplh<float>(10), 1e-6, true);
 }
 
+TEST_CASE("clip_amass: angles that only degrees could mean are said", "[clip]") {
+  const fake::Folder folder("amass_degrees");
+  const auto warned = [&](std::size_t column, double angle) {
+    std::vector<double> poses(2 * 72, 0);
+    poses[72 + column] = angle;
+    std::vector<std::string> warnings;
+    read_amass(fake::write_npz(folder.path / "a.npz", {{"poses", fake::npy<double>({2, 72}, poses)},
+                                                       {"trans", fake::npy<double>({2, 3}, std::vector<double>(6))},
+                                                       {"mocap_framerate", fake::npy<double>({}, {60})}}),
+               pelvis, warnings);
+    return fake::lines(warnings);
+  };
+  CHECK_THAT(warned(12, 45), Catch::Contains("a.npz: poses turns a joint by 45 rad") && Catch::Contains("degrees"));
+  CHECK(warned(12, 6.2).empty());
+  CHECK(warned(1, 45).empty());  // the root
+}
+
 TEST_CASE("clip_amass: SMPL-X files", "[clip]") {
   const fake::Folder folder("amass_x");
   const auto path = fake::write_npz(folder.path / "x.npz", smplx<float>(7));

@@ -133,6 +133,7 @@ TEST_CASE("clip_bvh: errors name file and line", "[clip]") {
   fails(broken("Frames: 2", "Frames: 0"), "15", "no frames");
   fails(broken("0.0416667", "0"), "15", "time of a frame");
   fails(broken("0.0416667", "1e-310"), "15", "time of a frame is 1e-310");
+  fails(broken("0.0416667", "33.3"), "15", "time of a frame is 33.3");
   fails(broken("OFFSET 0 10 0", "OFFSET 0 1e308 0"), "7", "1e+308");
   fails(broken("30 10 20", "30 1e308 20"), "17", "1e+308");
   // A hundred million frames of nothing are as many poses.
