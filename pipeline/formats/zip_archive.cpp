@@ -47,7 +47,7 @@ ZipArchive::ZipArchive(const std::filesystem::path& path, const ZipForm& form)
   int code = 0;
   zip_t* const zip = zip_open(path.c_str(), ZIP_RDONLY | (form.consistent ? ZIP_CHECKCONS : 0), &code);
   opened_->zip.reset(zip);
-  if (!zip && code == ZIP_ER_INCONS)
+  if (!zip && form.consistent && code == ZIP_ER_INCONS)
     throw Error("has a directory and entries that contradict each other", path.string(), damaged_cure());
   if (!zip) {
     zip_error_t error;

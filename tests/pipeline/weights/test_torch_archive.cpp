@@ -17,7 +17,7 @@ namespace {
 using fake::has;
 using testing::refusal;
 
-const ZipForm stored{"archive", "give an archive", "do not compress", false, std::int64_t{256} << 20};
+const ZipForm stored{"archive", "give an archive", "do not compress", false, std::int64_t{256} << 20, false};
 
 std::string content_of(const std::filesystem::path& path, const std::string& name) {
   return ZipArchive(path, stored).bytes(name, path.string() + ": " + name);
@@ -64,18 +64,28 @@ TEST_CASE("zip archive: compressed, encrypted, doubled and lying entries are ref
     return refusal([&] { content_of(path, "x/one"); });
   };
   CHECK(complaint_with(directory, 0x02014b50, 4) == "");  // nothing changed
-  CHECK(has(complaint_with(directory + 8, 1, 2), "is encrypted"));
-  CHECK(has(complaint_with(directory + 10, 8, 2), "is compressed by method 8"));
-  CHECK(has(complaint_with(directory + 16, 7, 4), "cannot be read (CRC error)"));
-  CHECK(has(complaint_with(directory + 20, 6, 4), "claims 5 bytes of 6 packed ones"));
-  CHECK(has(complaint_with(directory + 42, 0xFFFFFFF0, 4), "cannot be read"));
-  CHECK(has(complaint_with(directory + 42, 1, 4), "cannot be read"));
-  CHECK(has(complaint_with(directory + 28, 0xFFFF, 2), "cannot be opened as an archive"));
-  CHECK(has(complaint_with(end + 10, 3, 2), "cannot be opened as an archive"));
-  CHECK(has(complaint_with(end + 10, 1, 2), "cannot be opened as an archive"));
-  CHECK(has(complaint_with(end + 12, 0xFFFFFF00, 4), "cannot be opened as an archive"));
-  CHECK(has(complaint_with(end + 16, 0xFFFFFF00, 4), "cannot be opened as an archive"));
-  CHECK(has(complaint_with(end + 20, 5, 2), "cannot be opened as an archive"));
+  struct Damage {
+    std::size_t at;
+    std::uint64_t value;
+    int bytes;
+    std::string complaint;
+  };
+  const std::vector<Damage> damages = {
+      {directory + 8, 1, 2, "is encrypted"},
+      {directory + 10, 8, 2, "is compressed by method 8"},
+      {directory + 16, 7, 4, "cannot be read (CRC error)"},
+      {directory + 20, 6, 4, "claims 5 bytes of 6 packed ones"},
+      {directory + 42, 0xFFFFFFF0, 4, "cannot be read"},
+      {directory + 42, 1, 4, "cannot be read"},
+      {directory + 28, 0xFFFF, 2, "cannot be opened as an archive"},
+      {end + 10, 3, 2, "cannot be opened as an archive"},
+      {end + 10, 1, 2, "cannot be opened as an archive"},
+      {end + 12, 0xFFFFFF00, 4, "cannot be opened as an archive"},
+      {end + 16, 0xFFFFFF00, 4, "cannot be opened as an archive"},
+      {end + 20, 5, 2, "cannot be opened as an archive"},
+  };
+  for (const Damage& damage : damages)
+    CHECK(has(complaint_with(damage.at, damage.value, damage.bytes), damage.complaint));
   CHECK(complaint_with(whole.find("x/one"), 'y', 1) == "");  // names are those of the directory
 
   // An entry that claims 200 GB, with the wide size that it needs for that.
