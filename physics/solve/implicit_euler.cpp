@@ -98,8 +98,8 @@ struct ImplicitEuler::Impl {
   Points gradient, motion, trial;
   std::vector<double> energy, trial_energy;
   std::vector<char> drifting;
-  double relative_stiffness = 0;       // mean_stiffness of the last system
-  int exact_from, exact_wait;          // Newton iterations until the exact Hessian is tried
+  double relative_stiffness = 0;  // mean_stiffness of the last system
+  int exact_from, exact_wait;     // Newton iterations until the exact Hessian is tried
 
   Impl(const Scene& s, const ImplicitEulerOptions& o, const Eigen::VectorXd& m)
       : scene(s),

@@ -23,7 +23,7 @@ struct SubstepOptions {
   static constexpr double deep_impact = 0.05;
   // A solve with contact may take this part of max_newton, since another one follows.
   static constexpr double contact_iterations = 0.5;
-  // A first solve that another one follows takes at most this many iterations, or that part of max_newton if it is more.
+  // A first solve that another one follows takes at most this many iterations, or that part of max_newton if more.
   static constexpr int rough_iterations = 4;
   // A substep without room solves again at most this often, since no stiffness makes room.
   static constexpr int pinched_passes = 3;

@@ -39,7 +39,8 @@ double farthest_slide(std::span<const ContactTerm> terms, const Points& x0, cons
   double farthest = 0;
   for (const ContactTerm& term : terms)
     if (term.normal_force > 0)
-      farthest = std::max(farthest, std::min(contact_slip(term, x0, coasting).norm(), contact_slip(term, x0, x1).norm()));
+      farthest =
+          std::max(farthest, std::min(contact_slip(term, x0, coasting).norm(), contact_slip(term, x0, x1).norm()));
   return farthest;
 }
 
