@@ -1,5 +1,6 @@
 #include "physics/frame/make_frame.hpp"
 
+#include "collision/geometry/parallel.hpp"
 #include "physics/scene/part_of_scene.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "tests/physics/worlds.hpp"
@@ -198,6 +199,7 @@ TEST_CASE("make_frame: what the stepper has audited itself is not audited again"
 TEST_CASE("make_frame: a stop ends the audits, too, and a rejected step is not audited", "[make_frame]") {
   const World w = testing::sheet_over_plate();
   LiftingStepper stepper({-0.1, 0.0});
+  const ThreadLimit alone(1);  // with others this thread may get nothing of so small a loop, and then it does not ask
   const Made stopped = make(w, stepper, {.stop = [] { return true; }});
   CHECK(stopped.report.status == StepStatus::rejected);
   CHECK(stopped.report.reason == Reason::stopped);
