@@ -8,7 +8,6 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
@@ -18,6 +17,7 @@
 #include "pipeline/formats/gltf_numbers_tinygltf.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/json_text.hpp"
 #include "pipeline/host/library_message.hpp"
 #include "pipeline/host/read_file.hpp"
 
@@ -56,7 +56,7 @@ std::string_view json_of(std::string_view bytes) {
 // A text file whose buffers within it are as the package reads them: of one media type, without white space.
 std::string with_plain_data(std::string bytes) {
   constexpr std::string_view coded = ";base64,";
-  auto json = nlohmann::json::parse(bytes, nullptr, false);
+  Json json = parse_json_or_discard(bytes);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return bytes;
   bool changed = false;
   for (auto& buffer : json["buffers"]) {
@@ -70,7 +70,7 @@ std::string with_plain_data(std::string bytes) {
     changed = changed || plain != uri;
     buffer["uri"] = std::move(plain);
   }
-  return changed ? json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) : bytes;
+  return changed ? json_line(json) : bytes;
 }
 
 // Whether a file that asks for this extension has the same surface and motion without it.
@@ -85,7 +85,7 @@ bool leaves_shape(const std::string& extension) {
 class BufferFiles {
  public:
   BufferFiles(const std::filesystem::path& file, std::string_view bytes) {
-    const auto json = nlohmann::json::parse(json_of(bytes), nullptr, false);
+    const Json json = parse_json_or_discard(std::string(json_of(bytes)));
     if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return;
     for (std::size_t i = 0; i < json["buffers"].size(); ++i) {
       const auto& buffer = json["buffers"][i];
