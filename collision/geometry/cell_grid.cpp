@@ -30,6 +30,11 @@ CellGrid::CellGrid(const Points& x, double cell_edge) : cell_(cell_edge) {
   points_ = indices_by_value(cells, cell(size_[0] - 1, size_[1] - 1, size_[2] - 1) + 1);
 }
 
+double CellGrid::distance(const Vec3& at) const {
+  const Vec3 hi = lo_ + cell_ * Vec3(size_[0], size_[1], size_[2]);
+  return (lo_ - at).cwiseMax(at - hi).cwiseMax(0.0).norm();
+}
+
 int CellGrid::coordinate(double at, int axis) const {
   return static_cast<int>(std::clamp(std::floor((at - lo_[axis]) / cell_), -1e9, 1e9));
 }

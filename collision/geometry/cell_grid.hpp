@@ -17,6 +17,9 @@ class CellGrid {
   CellGrid(const Points& x, double cell);
   static constexpr int most_cubes = 1 << 24;
 
+  double edge() const { return cell_; }   // of a cube [m]
+  double distance(const Vec3& at) const;  // of `at` from all cubes together [m]; 0 inside
+
   // The points, sorted by the cubes in which they lie.
   const std::vector<int>& order() const { return points_.item; }
 

@@ -71,18 +71,18 @@ class CrossingCaches {
 
 // What depends only on the body at rest.
 struct SoftTissue {
-  SoftTissue(Surface surface, const Points& rest, const GiveWayOptions& o)
-      : body(std::move(surface)),
+  SoftTissue(const Surface& surface, const Points& rest, const GiveWayOptions& o)
+      : body(surface),
         shape(input_shape(body, rest)),
         options(o),
         reach(2 * o.most + o.room),
         thickness(thicknesses(body, rest, reach, o.through)) {
     intersecting_pairs(body, rest, at_rest);
   }
-  SoftTissue(const SoftTissue&) = delete;  // the shape points to the body
+  SoftTissue(const SoftTissue&) = delete;
   SoftTissue& operator=(const SoftTissue&) = delete;
 
-  Surface body;
+  const Surface& body;
   InputShape shape;
   GiveWayOptions options;
   double reach;                   // largest distance of vertices that meet: both move by `most` and leave room [m]
@@ -292,40 +292,59 @@ void let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, 
 
 }  // namespace
 
+// The soft tissue is made by the first pose: a run whose poses are all known from a store needs none.
+class GiveWay::Rest {
+ public:
+  Rest(Surface body, const Points& x, const GiveWayOptions& options)
+      : body_(std::move(body)), x_(x), options_(options) {}
+  const SoftTissue& tissue() {
+    std::call_once(once_, [&] { made_.emplace(body_, x_, options_); });
+    return *made_;
+  }
+
+ private:
+  const Surface body_;
+  const Points x_;
+  const GiveWayOptions options_;
+  std::once_flag once_;
+  std::optional<SoftTissue> made_;
+};
+
 GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options)
-    : tissue_(std::make_shared<const SoftTissue>(std::move(body), rest, options)) {}
+    : rest_(std::make_shared<Rest>(std::move(body), rest, options)) {}
 
 // Presses parts apart where they meet. Places that still cross are untangled one by one: from the pressed shape, or
 // from the skinned one, or else left in the one with fewer crossings. Then presses for more room, where this makes no
 // further pinches.
 Points GiveWay::operator()(const Points& x) const {
-  Meetings body = meetings(*tissue_, x, nullptr);
-  Points to = pressed(*tissue_, x, x, body.close);
-  IntersectionCache cache = tissue_->caches.take(tissue_->at_rest);
-  Pairs left = intersecting_pairs(tissue_->body, to, cache);
+  const SoftTissue& tissue = rest_->tissue();
+  Meetings body = meetings(tissue, x, nullptr);
+  Points to = pressed(tissue, x, x, body.close);
+  IntersectionCache cache = tissue.caches.take(tissue.at_rest);
+  Pairs left = intersecting_pairs(tissue.body, to, cache);
   if (!left.empty()) {
-    for (const Place& place : places_of(*tissue_, intersecting_pairs(tissue_->body, x, cache), left)) {
+    for (const Place& place : places_of(tissue, intersecting_pairs(tissue.body, x, cache), left)) {
       std::optional<Points> better;
-      if (place.pressed <= tissue_->options.mend_pressed) better = mended(*tissue_, place, to, x);
-      if (!better && place.skinned <= tissue_->options.mend_skinned) better = mended(*tissue_, place, x, x);
+      if (place.pressed <= tissue.options.mend_pressed) better = mended(tissue, place, to, x);
+      if (!better && place.skinned <= tissue.options.mend_skinned) better = mended(tissue, place, x, x);
       if (!better && place.pressed > place.skinned) better = x(place.vertices, Eigen::all);
       if (better) to(place.vertices, Eigen::all) = *better;
     }
-    left = intersecting_pairs(tissue_->body, to, cache);
+    left = intersecting_pairs(tissue.body, to, cache);
   }
-  if (to != x) body = meetings(*tissue_, to, &body.facing);
+  if (to != x) body = meetings(tissue, to, &body.facing);
   const auto is_tight = [&](const Meeting& m) {
-    return gap_of(m, to) < tissue_->options.tight_part * m.least &&
-           (row(to, m.vertex) - row(x, m.vertex)).norm() < tissue_->options.tight_part * tissue_->options.most;
+    return gap_of(m, to) < tissue.options.tight_part * m.least &&
+           (row(to, m.vertex) - row(x, m.vertex)).norm() < tissue.options.tight_part * tissue.options.most;
   };
-  for (int press = 0; press < tissue_->options.presses && std::ranges::any_of(body.close, is_tight); ++press) {
-    const Points more = opened(*tissue_, x, to, body.close, left, cache);
-    body = where_it_opens(*tissue_, x, body, more, left.size(), cache);
+  for (int press = 0; press < tissue.options.presses && std::ranges::any_of(body.close, is_tight); ++press) {
+    const Points more = opened(tissue, x, to, body.close, left, cache);
+    body = where_it_opens(tissue, x, body, more, left.size(), cache);
     if (body.facing.x == to) break;
     to = body.facing.x;
   }
-  tissue_->caches.give_back(std::move(cache));
-  let_through(*tissue_, pinches_of(*tissue_, body.close, x, to), x, to);
+  tissue.caches.give_back(std::move(cache));
+  let_through(tissue, pinches_of(tissue, body.close, x, to), x, to);
   return to;
 }
 

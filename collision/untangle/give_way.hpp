@@ -47,7 +47,8 @@ class GiveWay {
   Points operator()(const Points& x) const;
 
  private:
-  std::shared_ptr<const struct SoftTissue> tissue_;
+  class Rest;
+  std::shared_ptr<Rest> rest_;
 };
 
 }  // namespace selvedge

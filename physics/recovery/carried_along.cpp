@@ -1,17 +1,20 @@
 #include "physics/recovery/carried_along.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "collision/geometry/factorisations.hpp"
+#include "collision/geometry/nearest_point.hpp"
 
 namespace selvedge {
 
-int nearest_obstacle_node(const ContactWorld& world, const Points& nodes, const Vec3& place) {
+std::vector<int> nearest_obstacle_nodes(const ContactWorld& world, const Points& nodes, const Points& places) {
   const Eigen::Index first = world.cloth->vertex_count;
-  Eigen::Index nearest = 0;
-  (nodes.bottomRows(nodes.rows() - first).rowwise() - place.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-  return static_cast<int>(first + nearest);
+  const Points obstacles = nodes.bottomRows(nodes.rows() - first);
+  const CellGrid grid = grid_of(obstacles);
+  std::vector<int> nearest;
+  for (Eigen::Index k = 0; k < places.rows(); ++k)
+    nearest.push_back(static_cast<int>(first) + nearest_point(grid, obstacles, places.row(k).transpose()).point);
+  return nearest;
 }
 
 Points carried_along(const ContactWorld& world, const Points& before, const Points& nodes, double thickness) {
@@ -20,8 +23,9 @@ Points carried_along(const ContactWorld& world, const Points& before, const Poin
   const double edge = mean_edge(cloth, x);
   std::vector<Eigen::Triplet<double>> entries;
   Points pull(cloth.vertex_count, 3);
+  const std::vector<int> nearest = nearest_obstacle_nodes(world, before, x);
   for (int v = 0; v < cloth.vertex_count; ++v) {
-    const int node = nearest_obstacle_node(world, before, row(x, v));
+    const int node = nearest[v];
     const double d = std::max((before.row(node) - x.row(v)).norm(), thickness);
     const double weight = edge * edge / (d * d);
     entries.emplace_back(v, v, weight);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "collision/contact/contact_world.hpp"
 
 namespace selvedge {
@@ -11,7 +13,7 @@ namespace selvedge {
 // nodes of the world, finite, with at least one obstacle. Returns one row per vertex of the cloth.
 Points carried_along(const ContactWorld&, const Points& before, const Points& nodes, double thickness);
 
-// The obstacle node nearest to a place, as a node of the world; the lowest on a tie.
-int nearest_obstacle_node(const ContactWorld&, const Points& nodes, const Vec3& place);
+// The obstacle nodes nearest to places (rows), as nodes of the world; the lowest on a tie.
+std::vector<int> nearest_obstacle_nodes(const ContactWorld&, const Points& nodes, const Points& places);
 
 }  // namespace selvedge

@@ -19,12 +19,8 @@ struct Place {
 // The displacements in the step of the obstacle nodes nearest to `places`, with obstacles as in `at`.
 Points obstacle_displacements(const ContactWorld& world, const Points& at, const Points& places, const Points& nodes,
                               const Points& wanted) {
-  Points displacements(places.rows(), 3);
-  for (Eigen::Index k = 0; k < places.rows(); ++k) {
-    const int nearest = nearest_obstacle_node(world, at, places.row(k).transpose());
-    displacements.row(k) = wanted.row(nearest) - nodes.row(nearest);
-  }
-  return displacements;
+  const std::vector<int> nearest = nearest_obstacle_nodes(world, at, places);
+  return wanted(nearest, Eigen::all) - nodes(nearest, Eigen::all);
 }
 
 // Places within `farthest`, the least tangled first: the skinned targets, and where the cloth was clean last, moved

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+
+#include "collision/geometry/nearest_point.hpp"
+
 namespace selvedge {
 namespace {
 
@@ -45,7 +48,7 @@ Footing footing_of(const Points& x, const PosedSkin& rest) {
   footing.foot.resize(static_cast<std::size_t>(x.rows()));
 #pragma omp parallel for schedule(static)
   for (Eigen::Index v = 0; v < x.rows(); ++v)
-    (rest.x.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&footing.foot[v]);
+    footing.foot[v] = nearest_point(rest.grid, rest.x, x.row(v).transpose()).point;
   const std::vector<double> gap = gaps(footing.foot, rest, x);
   for (std::size_t v = 0; v < gap.size(); ++v) {
     const double out = (x.row(static_cast<Eigen::Index>(v)) - rest.x.row(footing.foot[v])).norm();

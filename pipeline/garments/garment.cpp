@@ -1,9 +1,11 @@
 #include "pipeline/garments/garment.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/nearest_point.hpp"
 
 namespace selvedge {
 namespace {
@@ -22,32 +24,33 @@ Eigen::VectorXd vertex_areas(const SkinnedSurface& skin) {
   return areas;
 }
 
-// width: of the Gaussian [m]; absent: the distance of p from the body.
-Shares shares_of(const Vec3& p, const SkinnedSurface& body, const Eigen::VectorXd& areas, Fit fit,
+// width: of the Gaussian [m]; absent: the distance of p from the body. The grid is of the body at rest.
+Shares shares_of(const Vec3& p, const SkinnedSurface& body, const CellGrid& grid, const Eigen::VectorXd& areas, Fit fit,
                  std::optional<double> width = {}) {
   constexpr double reach = 3;  // standard deviations
-  const Eigen::VectorXd squared = (body.rest.rowwise() - p.transpose()).rowwise().squaredNorm();
-  Eigen::Index nearest = 0;
-  const double least = squared.minCoeff(&nearest), variance = width ? *width * *width : least;
-  if (fit == Fit::tight || !(variance > 0)) return {{static_cast<int>(nearest), 1.0}};
+  const auto [nearest, least] = nearest_point(grid, body.rest, p);
+  const double variance = width ? *width * *width : least;
+  if (fit == Fit::tight || !(variance > 0)) return {{nearest, 1.0}};
   Shares shares;
+  grid.for_each_near(p, std::sqrt(least + reach * reach * variance) * (1 + 1e-9), [&](int v) {
+    const double beyond = ((body.rest.row(v) - p.transpose()).squaredNorm() - least) / variance;
+    if (beyond <= reach * reach) shares.emplace_back(v, areas[v] * std::exp(-beyond / 2));
+  });
+  std::ranges::sort(shares);
   double sum = 0;
-  for (Eigen::Index v = 0; v < squared.size(); ++v) {
-    const double beyond = (squared[v] - least) / variance;
-    if (beyond > reach * reach) continue;
-    shares.emplace_back(static_cast<int>(v), areas[v] * std::exp(-beyond / 2));
-    sum += shares.back().second;
-  }
-  if (!(sum > 0)) return {{static_cast<int>(nearest), 1.0}};
+  for (const auto& [vertex, share] : shares) sum += share;
+  if (!(sum > 0)) return {{nearest, 1.0}};
   for (auto& [vertex, share] : shares) share /= sum;
   return shares;
 }
 
 std::vector<Shares> all_shares(const Points& x, const SkinnedSurface& body, Fit fit, std::optional<double> width = {}) {
   const Eigen::VectorXd areas = vertex_areas(body);
+  const CellGrid grid = grid_of(body.rest);
   std::vector<Shares> shares(static_cast<std::size_t>(x.rows()));
 #pragma omp parallel for schedule(static)
-  for (Eigen::Index v = 0; v < x.rows(); ++v) shares[v] = shares_of(x.row(v).transpose(), body, areas, fit, width);
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    shares[v] = shares_of(x.row(v).transpose(), body, grid, areas, fit, width);
   return shares;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "collision/geometry/box_diagonal.hpp"
+#include "collision/geometry/nearest_point.hpp"
 #include "collision/geometry/pair_budget.hpp"
 #include "collision/geometry/surface.hpp"
 #include "collision/search/intersections.hpp"
@@ -30,10 +31,11 @@ bool fits_box(const Points& x, const Points& body) {
 double off_body(const Points& x, const Points& body, const Points& normals) {
   const Eigen::Index step = 1 + (x.rows() - 1) / most_sampled;
   const double size = box_diagonal(x);
+  const CellGrid grid = grid_of(body);
   double distances = 0, inside = 0, count = 0;
   for (Eigen::Index v = 0; v < x.rows(); v += step, ++count) {
-    Eigen::Index foot = 0;
-    distances += std::sqrt((body.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&foot));
+    const auto [foot, squared] = nearest_point(grid, body, x.row(v).transpose());
+    distances += std::sqrt(squared);
     inside += (x.row(v) - body.row(foot)).dot(normals.row(foot)) < -deep * size;
   }
   return distances / count / size + inside / count;

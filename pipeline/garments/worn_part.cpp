@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "collision/geometry/box_diagonal.hpp"
+#include "collision/geometry/nearest_point.hpp"
 
 namespace selvedge {
 namespace {
@@ -30,11 +31,12 @@ WornPart worn_part(const Points& x, const Points& body, double near) {
   assert(x.rows() > 0 && body.rows() > 0);
   const double reach = near * box_diagonal(x);
   const Eigen::Index step = 1 + (x.rows() - 1) / most_places, sampled = 1 + (x.rows() - 1) / step;
+  const CellGrid grid = grid_of(body);
   WornPart part;
   for (Eigen::Index v = 0; v < x.rows(); v += step) {
-    Eigen::Index foot = 0;
-    const double distance = std::sqrt((body.rowwise() - x.row(v)).rowwise().squaredNorm().minCoeff(&foot));
-    if (distance <= reach) part.places.push_back({static_cast<int>(foot), distance + reach, static_cast<int>(v)});
+    const auto [foot, squared] = nearest_point(grid, body, x.row(v).transpose());
+    const double distance = std::sqrt(squared);
+    if (distance <= reach) part.places.push_back({foot, distance + reach, static_cast<int>(v)});
   }
   std::ranges::stable_sort(part.places, [&](const WornPart::Place& a, const WornPart::Place& b) {
     return body(a.foot, 1) > body(b.foot, 1);

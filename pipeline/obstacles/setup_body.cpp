@@ -233,7 +233,7 @@ void perform(const Config& section, const std::filesystem::path& folder, Perform
 void place_performance(const Config& section, const std::string& name, Performance& who) {
   who.name = name;
   who.section = section;
-  who.motion = read_motion(section["motion"], body_at(who, 0));
+  who.motion = section["motion"].given ? read_motion(section["motion"], body_at(who, 0)) : Motion{};
 }
 
 Performance read_performance(const Config& section, const std::filesystem::path& folder) {

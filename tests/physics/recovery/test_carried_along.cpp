@@ -61,8 +61,10 @@ TEST_CASE("carried along: with the nearest, and what lies farther off smoothly, 
 
 TEST_CASE("carried along: the node nearest to a place, the lowest on a tie") {
   const Between b(2, 0.1);
-  CHECK(nearest_obstacle_node(b.world, b.before, {-0.3, 0, -0.3}) == b.world.first_node[0]);
-  CHECK(nearest_obstacle_node(b.world, b.before, {-0.3, 0.01, -0.3}) == b.world.first_node[1]);
+  Points places(2, 3);
+  places << -0.3, 0, -0.3, -0.3, 0.01, -0.3;
+  CHECK(nearest_obstacle_nodes(b.world, b.before, places) ==
+        std::vector<int>{b.world.first_node[0], b.world.first_node[1]});
 }
 
 }  // namespace selvedge::test_carried_along
