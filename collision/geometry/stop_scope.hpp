@@ -42,8 +42,9 @@ class StopPoll {
     return true;
   }
   bool was_wanted() const { return wanted_.load(std::memory_order_relaxed); }
-  void check() const {
-    if (was_wanted()) throw Stopped();
+  // Asks once more, since a short loop may be done by the other threads alone.
+  void check() {
+    if (wanted()) throw Stopped();
   }
 
  private:
