@@ -20,7 +20,6 @@ constexpr int direct_limit = 60;
 
 constexpr int stiff_iterations = 150;  // if an automatic PCG solve takes more, CHOLMOD takes the next ones
 constexpr int stiff_turns = 1000;      // number of solves by CHOLMOD before PCG is tried again
-constexpr int spare_iterations = 4;    // of PCG beyond those with fresh coarse levels, before these are made anew
 
 constexpr double jacobi_share = 0.4;           // of a tolerance: block Jacobi's norm underrates smooth errors
 constexpr double float_tolerance = 1e-3;       // reached by one pass in float
@@ -179,11 +178,11 @@ LinearSystemSolver::~LinearSystemSolver() = default;
 LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
 
 // After a solve with the preconditioner of prepare_single(). Coarse levels of an earlier system are kept as long as PCG
-// needs few more iterations than with the system for which they were made: new levels cost two to three iterations.
+// needs no more iterations than with the system for which they were made.
 void LinearSystemSolver::Impl::judge_preconditioner(const LinearReport& report) {
   if (fresh_iterations < 0)
     fresh_iterations = report.converged ? report.iterations : -1;
-  else if (!report.converged || report.iterations > fresh_iterations + spare_iterations)
+  else if (!report.converged || report.iterations > fresh_iterations)
     fresh_iterations = -1;
 }
 

@@ -16,7 +16,7 @@ NearestPoint of_all(const Points& x, const Vec3& at) {
 void check_same(const CellGrid& grid, const Points& x, const Vec3& at) {
   const NearestPoint found = nearest_point(grid, x, at), expected = of_all(x, at);
   CHECK(found.point == expected.point);
-  CHECK(found.squared_distance == expected.squared_distance);
+  CHECK(found.squared_distance == Approx(expected.squared_distance).epsilon(1e-14));
 }
 
 }  // namespace

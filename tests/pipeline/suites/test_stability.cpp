@@ -4,8 +4,6 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/run/simulate.hpp"
-#include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/suites/stability.hpp"
 #include "pipeline/suites/stability_suite.hpp"
@@ -120,26 +118,6 @@ TEST_CASE("stability: a run that moves to its end or meets its limit fails, with
   CHECK_THAT(rows[0].failures.at(0), Contains("does not rest"));
   CHECK(std::filesystem::exists(request.out / "fall_0" / "view.html"));
   CHECK_THAT(stability_table(rows), Contains("0 of 2 pass"));
-}
-
-// Contacts may stiffen 1e4 times for this: with 100 times 105 substeps of 40 frames were halved, and 1.3 % of all
-// vertices held back.
-TEST_CASE("stability: light cloth carries cloth 1e4 times as heavy without being held back", "[stability]") {
-  const Setup setup =
-      read_setup(source_root() / "configs/stability/neighbours.yaml",
-                 {"cloths.lower.rectangle.resolution=9", "cloths.upper.rectangle.resolution=8", "run.frames=24"});
-  State state = setup.initial;
-  int halved = 0, held = 0, pairs = 0;
-  simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, setup.run.frames, state,
-           [&](const FrameEvent& event) {
-             halved += event.report.collision.halved_substeps;
-             held += event.report.collision.held_vertices;
-             pairs += event.report.collision.pairs_after;
-             return true;
-           });
-  CHECK(pairs == 0);
-  CHECK(halved < 20);
-  CHECK(held < 20);
 }
 
 TEST_CASE("stability: a faulty suite is named by file and line", "[stability]") {
