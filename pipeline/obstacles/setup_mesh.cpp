@@ -59,8 +59,8 @@ void refuse_far(const Config& at, const std::string& noun, const Points& x) {
 }
 
 void warn_of_extent(const Config& section, const std::string& kind, const std::string& noun, double largest,
-                    const Points& x, std::vector<std::string>& warnings) {
-  const double extent = box_diagonal(x);
+                    const Points& x, const Triangles& triangles, std::vector<std::string>& warnings) {
+  const double extent = box_diagonal(x(triangles.reshaped(), Eigen::all));
   if (section[kind]["unit"].given || (extent <= largest && extent >= smallest)) return;
   const std::string cure = likely_cure(extent, section["scale"].number());
   warnings.push_back(fmt::format("{} spans {:.3g} m; {}", noun, extent, cure));

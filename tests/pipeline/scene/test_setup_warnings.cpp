@@ -51,6 +51,8 @@ TEST_CASE("A file in centimetres that is read as metres is told by its extent", 
   const Setup cured = scenes.read("cloths: [{name: shirt, mesh: small.obj, scale: 1000}]\n");
   CHECK(cured.warnings.empty());
   CHECK(box_diagonal(cured.initial.x) == Approx(std::sqrt(2)));
+  fake::write(scenes.folder, "loose.obj", square(1) + "v 90 0 0\n");
+  CHECK_THAT(scenes.warnings("cloths: [{mesh: loose.obj}]\n"), !Contains("spans") && Contains("in no triangle"));
   fake::write(scenes.folder, "wide.obj", square(10));
   CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: wide.obj}]\n"), Contains("`unit: dm` makes it 1.41 m"));
   CHECK(scenes.warnings("cloths: [{mesh: {file: big.obj, unit: cm}}]\n").empty());
