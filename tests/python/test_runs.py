@@ -187,7 +187,8 @@ def test_a_notebook_shows_the_page_in_a_frame(run, tmp_path):
     assert page.save(tmp_path / "page.html").read_text(encoding="utf-8") == page.text
     assert "MB" in repr(page) and "run" in repr(page)
     assert selvedge.view((run, run), limit=np.int64(0)).runs == [os.fspath(run)] * 2
-    for runs, limit, words in [(run, -1, "limit is -1"), (run, 1.5, "limit is 1.5"), (7, 0, "runs is 7"), ([7], 0, "runs is")]:
+    refused = [(run, -1, "limit is -1"), (run, 1.5, "limit is 1.5"), (7, 0, "runs is 7"), ([7], 0, "runs is")]
+    for runs, limit, words in refused:
         with pytest.raises(selvedge.Error, match=f"view: {words}(.|\n)*cure: give"):
             selvedge.view(runs, limit=limit)
     with pytest.raises(selvedge.Error, match="absent.*cannot write"):
@@ -300,7 +301,9 @@ def test_the_fit_has_a_number_a_vertex(run, scene_file, tmp_path):
     fit = selvedge.fit(run, scene=scene_file, body="ball", frame=3)
     n = selvedge.read_trajectory(run)["x"].shape[1]
     assert fit["frame"] == 3 and all(fit[name].shape == (n,) for name in ("gap", "strain", "pressure", "row"))
-    for wrong, words in [({"frame": -1}, "frame"), ({"reach": 0.0}, "reach"), ({"body": "bal"}, "bal")]:
+    wrongs = [({"frame": -1}, "frame"), ({"body": "bal"}, "bal")]
+    wrongs += [({"reach": reach}, "reach") for reach in (0.0, np.inf, np.nan)]
+    for wrong, words in wrongs:
         with pytest.raises(selvedge.Error, match=words):
             selvedge.fit(run, scene=scene_file, **wrong)
 

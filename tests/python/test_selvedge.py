@@ -203,6 +203,13 @@ def test_bodies_come_in_any_sequence():
             selvedge.check(x, triangles, bodies)
 
 
+def test_what_no_scene_file_can_say_is_refused_in_a_line():
+    x, triangles = sheet(4)
+    with pytest.raises(selvedge.Error, match="material: holds what a scene file cannot say") as error:
+        selvedge.Scene().add_cloth(x, triangles, material={"density": {1}})
+    assert "Traceback" not in str(error.value) and len(str(error.value).splitlines()) == 2
+
+
 def test_pins_are_a_list_or_a_mask():
     x, triangles = sheet(9)
     held = np.isclose(x[:, 0], x[:, 0].min())
