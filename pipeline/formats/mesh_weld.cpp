@@ -143,8 +143,7 @@ std::vector<int> joined_where_open(const Surface& as_read, const std::vector<int
   }
   for (int v = 0; v < surface.vertex_count; ++v) {
     if (border[v]) sets.join(v, open[places[v]]);
-    if (as_read.vertex_owner[v] < 0 || is_copy(v))
-      sets.join(v, used.contains(places[v]) ? used[places[v]] : places[v]);
+    if (as_read.vertex_owner[v] < 0 || is_copy(v)) sets.join(v, used.contains(places[v]) ? used[places[v]] : places[v]);
   }
   std::vector<int> joined;
   for (int v = 0; v < surface.vertex_count; ++v) joined.push_back(sets.root(v));
