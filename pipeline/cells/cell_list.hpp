@@ -61,6 +61,9 @@ struct CellList {
   // True: a cell keeps parts of its result, each with a key of its own. The folder then has the files of a stopped try
   // on this machine, or of an earlier result.
   bool keeps_parts = false;
+  // Whether a folder holds all that `gather` reads of a finished cell; parts may be lost or cut off where folders are
+  // copied. Absent: `gather` reads records alone.
+  std::function<bool(std::size_t, const std::filesystem::path& folder, const CellRecord&)> is_whole;
 };
 
 // A text as the name of a cell: letters, digits, `.`, `_` and `-`, with a letter or a digit in front. What else it has

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/geometry/counted.hpp"
 #include "pipeline/cells/do_cells.hpp"
 #include "pipeline/host/numbers_json.hpp"
 
@@ -26,7 +27,7 @@ std::string cells_table(const std::vector<WorkCell>& cells) {
     text += fmt::format("{:<40} {:>8.0f} {:>6}\n", cell.name, cell.seconds, cell.needs.size());
     sum += cell.seconds;
   }
-  return text + fmt::format("{} cells, {:.1f} h of one core, roughly\n", cells.size(), sum / 3600);
+  return text + fmt::format("{}, {:.1f} h of one core, roughly\n", counted(std::ssize(cells), "cell"), sum / 3600);
 }
 
 std::string cell_names_json(const CellList& list) {

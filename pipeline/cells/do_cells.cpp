@@ -90,6 +90,7 @@ FoundCell find_cell(const CellList& list, std::size_t number, const fs::path& ou
   if (!record || record->cell != name || record->kind != list.kind) return {};
   if (record->program != list.program) return {CellState::of_other_program, {}};
   if (record->key != list.key(number)) return {CellState::of_other_settings, {}};
+  if (list.is_whole && !list.is_whole(number, cell_folder(out, name), *record)) return {};
   return {CellState::there, std::move(*record)};
 }
 

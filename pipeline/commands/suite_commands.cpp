@@ -4,6 +4,7 @@
 
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/commands/number_checks.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/suites/bench.hpp"
 #include "pipeline/suites/stability.hpp"
@@ -45,11 +46,11 @@ RunCommand bench_command(CLI::App& command) {
 RunCommand stress_command(CLI::App& command) {
   const auto request = std::make_shared<StressRequest>();
   command.add_option("scenes", request->scenes, "names of scenes; default: all");
-  command.add_option("--repeats", request->repeats, "number of runs of each scene")->check(CLI::PositiveNumber);
+  command.add_option("--repeats", request->repeats, "number of runs of each scene")->check(above_zero());
   command.add_option("--seed", request->seed, "seed of the jitter in the first run");
   command
       .add_option("--jitter", request->jitter, "largest random displacement of start positions, in mean edge lengths")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   command.add_flag("--short", request->short_form, "run the short forms of the scenes");
   command.add_option("--configs", request->configs, "folder of the scenes");
   command.add_option("--out", request->out, "folder for the results");
@@ -65,8 +66,7 @@ RunCommand wardrobe_command(CLI::App& command) {
   const auto request = std::make_shared<WardrobeRequest>();
   command.add_option("wear", request->wear, "names of garments and outfits that the program makes; default: all");
   command.add_option("--clips", request->clips, "names of procedural clips; default: all")->delimiter(',');
-  command.add_option("--frames", request->most_frames, "largest number of frames of a clip")
-      ->check(CLI::PositiveNumber);
+  command.add_option("--frames", request->most_frames, "largest number of frames of a clip")->check(above_zero());
   command.add_option("--configs", request->configs, "folder of the configurations");
   command.add_option("--out", request->out, "folder for the results");
   return [request](bool json) {

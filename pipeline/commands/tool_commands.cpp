@@ -7,6 +7,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/commands/number_checks.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/run/progress.hpp"
@@ -50,7 +51,7 @@ RunCommand check_command(CLI::App& command) {
   command.add_option("--audit", request->audit, "own: the program's audit; fcl: also FCL's result, to compare")
       ->check(CLI::IsMember({"own", "fcl"}));
   command.add_option("--horizon", request->horizon, "distance above which gaps are not measured [m]")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command.add_flag("--volume", request->volume,
                    "also measure the volume that crossing surfaces enclose, with holes closed");
   return [request](bool json) {
@@ -68,7 +69,7 @@ RunCommand untangle_command(CLI::App& command) {
   command.add_option("--unit", request->unit, "unit of the coordinates, for lengths in the report: m, dm, cm, mm, in");
   command.add_option("--layers", request->layers, "one number for each piece of cloth; the innermost has the lowest")
       ->delimiter(',');
-  command.add_option("--iterations", request->iterations, "largest number of iterations")->check(CLI::PositiveNumber);
+  command.add_option("--iterations", request->iterations, "largest number of iterations")->check(above_zero());
   return [request](bool json) {
     UntangleRequest shown = *request;
     const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -100,13 +101,12 @@ RunCommand push_command(CLI::App& command) {
       .add_option("--shape", request->shape,
                   "surface of a body that passes through itself: union (its outside) or raw (all faces)")
       ->check(CLI::IsMember({"union", "raw"}));
-  command.add_option("--alpha", request->alpha, "length of the push, in penetration depths")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--margin", request->margin, "length added to each push [m]")->check(CLI::NonNegativeNumber);
+  command.add_option("--alpha", request->alpha, "length of the push, in penetration depths")->check(at_least_zero());
+  command.add_option("--margin", request->margin, "length added to each push [m]")->check(at_least_zero());
   command.add_option("--recheck", request->recheck, "number of further passes over pushed vertices")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   command.add_option("--edge-pass", request->edge_pass, "number of rounds that move crossing edges out of the body")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   return [request](bool json) {
     const PushReport report = push_mesh(*request);
     return end_command(json, push_text(report), push_json(report), report.after.collision_free);
@@ -216,10 +216,9 @@ RunCommand fit_command(CLI::App& command) {
   command.add_option("--body", request->body, "name of the body; default: the first one of the scene");
   command.add_option("--regions", request->regions,
                      "regions of the body: vertices by name (.json); default: regions by joints");
-  command.add_option("--frame", request->frame, "number of the frame; default: the last one")
-      ->check(CLI::NonNegativeNumber);
+  command.add_option("--frame", request->frame, "number of the frame; default: the last one")->check(at_least_zero());
   command.add_option("--reach", request->reach, "distance from the skin within which cloth counts as touching [m]")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command.add_option("--out", request->out, "file for a page that shows the results as colours (.html)");
   return [request](bool json) {
     const FitReport report = fit(*request);

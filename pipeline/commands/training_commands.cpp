@@ -3,6 +3,7 @@
 
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
+#include "pipeline/commands/number_checks.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
 #include "pipeline/drapes/train_drapes.hpp"
 #include "pipeline/host/interrupt.hpp"
@@ -106,7 +107,7 @@ RunCommand teach_command(CLI::App& command) {
   command.add_option("--clips", request->clips, "clips of the body to fit on")->required()->delimiter(',');
   command.add_option("--held-out", request->held_out, "clips of the body to measure on")->delimiter(',');
   command.add_option("--rounds", request->rounds, "in which the solver corrects what the fitted stepper makes")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   command.add_flag("--own", request->own, "a set of coefficients for each vertex, for this scene alone");
   command.add_option("--out", request->out, "file of coefficients (.h5)")->required();

@@ -291,6 +291,11 @@ CellList list_of(const std::shared_ptr<CompareWork>& work) {
   list.run = [work](std::size_t k, const std::filesystem::path& folder, const CellWatch& watch) {
     return run_scene_cell(*work, k, folder, watch);
   };
+  list.is_whole = [work](std::size_t k, const std::filesystem::path& folder, const CellRecord& record) {
+    SceneWork& scene = scene_of(*work, k);
+    scene.folder = folder;
+    return read_measured(work->comparison, record.machine, scene);
+  };
   list.gather = [work](const std::vector<CellRecord>& records, const std::filesystem::path& out) {
     return gather_scenes(*work, records, out);
   };

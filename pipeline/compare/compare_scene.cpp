@@ -216,7 +216,8 @@ bool measure_scene(const Comparison& comparison, bool short_form, const CellWatc
   return true;
 }
 
-void read_measured(const Comparison& comparison, const std::string& machine, SceneWork& work) {
+bool read_measured(const Comparison& comparison, const std::string& machine, SceneWork& work) {
+  bool whole = true;
   work.machine = machine;
   work.runs.assign(work.setups.size(), {});
   work.errors.assign(work.setups.size(), {});
@@ -224,14 +225,20 @@ void read_measured(const Comparison& comparison, const std::string& machine, Sce
     describe_scene(work);
   else if (const auto floor = read_floor(whole_file(floor_file(work)), work.keys.reference))
     work.floor = *floor;
+  else
+    whole = false;
   for (std::size_t s = 0; s < work.setups.size(); ++s) {
     if (!work.setups[s]) continue;
     if (const auto errors = read_errors(whole_file(errors_file(work, s)), errors_key(work, s)))
       work.errors[s] = *errors;
+    else
+      whole = whole && work.scene->states == 0;
     for (int repeat = 0; repeat < comparison.repeats; ++repeat)
       if (auto run = read_run(whole_file(run_file(work, s, repeat)), run_key(work, s)))
         work.runs[s].push_back(std::move(*run));
+    whole = whole && std::ssize(work.runs[s]) == comparison.repeats;
   }
+  return whole;
 }
 
 std::filesystem::path trajectory_of(const SceneWork& work, std::size_t setting) {

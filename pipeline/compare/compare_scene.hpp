@@ -40,8 +40,9 @@ std::string key_of(const Comparison&, const SceneWork&);
 // the scene's folder as they end, and those that are there are not made again. False: stopped.
 bool measure_scene(const Comparison&, bool short_form, const CellWatch&, SceneWork&);
 
-// Reads what measure_scene has left in the scene's folder. `machine`: the one that has measured.
-void read_measured(const Comparison&, const std::string& machine, SceneWork&);
+// Reads what measure_scene has left in the scene's folder. `machine`: the one that has measured. False: not all of it
+// is there.
+bool read_measured(const Comparison&, const std::string& machine, SceneWork&);
 
 // The file of a setting's first run, which need not be there.
 std::filesystem::path trajectory_of(const SceneWork&, std::size_t setting);

@@ -45,8 +45,9 @@ void check_number(const Check& check, const YAML::Node& node) {
   if (!q.problem.empty()) check.fail(node, "is " + shown(node) + ", which " + q.problem, expected(key));
   if (!key.range.has(q.value)) check.fail(node, "is " + shown(node), expected(key));
   const bool whole = key.kind == Kind::integer || key.kind == Kind::integers;
-  if (whole && (q.value != std::floor(q.value) || std::abs(q.value) > 2e9))
+  if (whole && q.value != std::floor(q.value))
     check.fail(node, "is " + shown(node) + ", which is not an integer", expected(key));
+  if (whole && std::abs(q.value) > 2e9) check.fail(node, "is " + shown(node) + ", beyond 2e9", expected(key));
   check.out.numbers.push_back(q.value);
 }
 

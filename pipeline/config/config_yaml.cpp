@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/config/aliases_yaml.hpp"
 #include "pipeline/config/config_text.hpp"
 #include "pipeline/host/read_file.hpp"
 
@@ -182,6 +183,7 @@ Config read_config(const std::filesystem::path& path, const Section& section,
     if (!root.IsMap()) throw Error("is not a list of `key: value`", origin.file, cure);
     int left = most_values;
     count_values(root, origin.file, 0, left);
+    expand_aliases(root);
     for (const std::string& assignment : overrides) apply_override(assignment, root, section, origin);
     return checked_section(root, section, "", origin.file, origin);
   } catch (const YAML::Exception& e) {

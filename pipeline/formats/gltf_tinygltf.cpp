@@ -335,10 +335,11 @@ const std::vector<double>& morph_weights(const tinygltf::Node& node, const tinyg
   return node.weights.empty() ? mesh.weights : node.weights;
 }
 
-// Adds the chosen meshes that skins deform, each as a group with its name, and the joints of these skins. Returns the
-// names of all meshes that skins deform.
+// Adds the chosen meshes that skins deform, each as a group with its name, and the joints of these skins. `parts` gets
+// the number of each vertex's primitive. Returns the names of all meshes that skins deform.
 std::vector<std::string> add_meshes(const Document& file, const std::vector<int>& place, const NameChoice& choice,
-                                    GltfScene& scene, std::vector<Eigen::Triplet<double>>& weights) {
+                                    GltfScene& scene, std::vector<Eigen::Triplet<double>>& weights,
+                                    std::vector<int>& parts) {
   std::vector<std::string> names;
   std::map<int, std::vector<int>> joints;  // of each skin
   for (const tinygltf::Node& node : file.model.nodes) {
@@ -349,9 +350,11 @@ std::vector<std::string> add_meshes(const Document& file, const std::vector<int>
     if (!choice.takes(name)) continue;
     if (!joints.contains(node.skin)) joints[node.skin] = add_skin(file, node.skin, place, scene);
     const auto first = static_cast<int>(scene.mesh.x.rows());
-    for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       add_primitive(file, mesh.primitives[p], morph_weights(node, mesh),
                     fmt::format("mesh `{}`, primitive {}", name, p), joints[node.skin], weights, scene.mesh);
+      parts.resize(static_cast<std::size_t>(scene.mesh.x.rows()), parts.empty() ? 0 : parts.back() + 1);
+    }
     std::vector<int>& group = group_named(scene.mesh.groups, name);
     for (int v = first; v < static_cast<int>(scene.mesh.x.rows()); ++v) group.push_back(v);
   }
@@ -417,12 +420,13 @@ GltfScene read_gltf(const std::filesystem::path& path, const NameChoice& choice)
   GltfScene scene;
   const std::vector<int> place = read_nodes(file, scene.nodes);
   std::vector<Eigen::Triplet<double>> weights;
-  const std::vector<std::string> names = add_meshes(file, place, choice, scene, weights);
+  std::vector<int> parts;
+  const std::vector<std::string> names = add_meshes(file, place, choice, scene, weights, parts);
   if (names.empty())
     file.fail("skins", "is not used by any mesh", "export the body together with its armature and weights");
   choice.check(names, path.string());
   if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
-  scene.weights = join_alike(weights, std::ssize(scene.joints), scene.mesh, path.filename().string());
+  scene.weights = join_alike(weights, std::ssize(scene.joints), parts, scene.mesh, path.filename().string());
   for (std::size_t a = 0; a < file.model.animations.size(); ++a)
     scene.animations.push_back(animation_of(file, place, a));
   return scene;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/counted.hpp"
+#include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
@@ -76,6 +78,76 @@ std::vector<int> alike_places(const Points& x, const Eigen::SparseMatrix<double,
       },
       places);
   return places;
+}
+
+// The triangles whose corners are three vertices.
+Triangles whole(const Triangles& triangles) {
+  std::vector<int> kept;
+  for (int t = 0; t < triangles.rows(); ++t)
+    if (const auto row = triangles.row(t); row[0] != row[1] && row[1] != row[2] && row[2] != row[0]) kept.push_back(t);
+  return triangles(kept, Eigen::all);
+}
+
+// Of each vertex whether an edge there has a single triangle.
+std::vector<char> on_border(const Surface& surface) {
+  std::vector<char> border(static_cast<std::size_t>(surface.vertex_count), 0);
+  const std::vector<int> count = face_counts(surface);
+  for (Eigen::Index e = 0; e < surface.edges.rows(); ++e)
+    if (count[static_cast<std::size_t>(e)] == 1) border[surface.edges(e, 0)] = border[surface.edges(e, 1)] = 1;
+  return border;
+}
+
+// Of each connected piece whether all of its triangles are at the places of others, in lower pieces: it is a copy.
+std::vector<char> copied_pieces(const Surface& surface, const std::vector<int>& places) {
+  std::map<std::array<int, 3>, int> lowest;  // piece that has a triangle at these places
+  const auto piece_of = [&](int t) { return surface.component[surface.triangles(t, 0)]; };
+  const auto corners_of = [&](int t) {
+    std::array<int, 3> at{};
+    for (int k = 0; k < 3; ++k) at[k] = places[surface.triangles(t, k)];
+    std::ranges::sort(at);
+    return at;
+  };
+  for (int t = 0; t < surface.triangles.rows(); ++t) {
+    int& piece = lowest.try_emplace(corners_of(t), piece_of(t)).first->second;
+    piece = std::min(piece, piece_of(t));
+  }
+  std::vector<char> copied(static_cast<std::size_t>(surface.component_count), 1);
+  for (int t = 0; t < surface.triangles.rows(); ++t)
+    if (lowest[corners_of(t)] == piece_of(t)) copied[piece_of(t)] = 0;
+  return copied;
+}
+
+// Joins borders along edges where exactly two triangles meet, first within parts, then everywhere. What is open after
+// that, in no triangle or a copy is joined by its place. Returns of each vertex the lowest that it is joined with.
+std::vector<int> joined_where_open(const Surface& as_read, const std::vector<int>& places,
+                                   const std::vector<int>& parts) {
+  DisjointSets sets(as_read.vertex_count);
+  Surface surface = as_read;
+  for (const bool within_parts : {true, false}) {
+    const std::vector<char> border = on_border(surface);
+    std::map<std::pair<int, int>, int> first;
+    std::vector<int> open = places;
+    for (int v = 0; v < surface.vertex_count; ++v)
+      open[v] = border[v] ? first.try_emplace({places[v], within_parts ? parts[v] : 0}, v).first->second : v;
+    std::optional<WeldedSurface> welded = welded_surface(surface, open);
+    if (!welded) continue;
+    for (int v = 0; v < surface.vertex_count; ++v) sets.join(v, welded->joined[v]);
+    surface = std::move(welded->surface);
+  }
+  const std::vector<char> border = on_border(surface), copied = copied_pieces(surface, places);
+  std::map<int, int> used, open;  // of a place the lowest vertex of a triangle, and that at a border
+  const auto is_copy = [&](int v) { return surface.vertex_owner[v] >= 0 && copied[surface.component[v]]; };
+  for (int v = 0; v < surface.vertex_count; ++v) {
+    if (surface.vertex_owner[v] >= 0 && !is_copy(v)) used.try_emplace(places[v], v);
+    if (border[v]) open.try_emplace(places[v], v);
+  }
+  for (int v = 0; v < surface.vertex_count; ++v) {
+    if (border[v]) sets.join(v, open[places[v]]);
+    if (as_read.vertex_owner[v] < 0 || is_copy(v)) sets.join(v, used.contains(places[v]) ? used[places[v]] : places[v]);
+  }
+  std::vector<int> joined;
+  for (int v = 0; v < surface.vertex_count; ++v) joined.push_back(sets.root(v));
+  return joined;
 }
 
 }  // namespace
@@ -148,18 +220,20 @@ void weld_as(const Mesh& welded, Mesh& mesh) {
 }
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
-                                                        Eigen::Index joints, Mesh& mesh, const std::string& name) {
+                                                        Eigen::Index joints, const std::vector<int>& parts, Mesh& mesh,
+                                                        const std::string& name) {
   using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   Weights as_read(mesh.x.rows(), joints);
   as_read.setFromTriplets(weights.begin(), weights.end());
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_read.rows());
   for (const Eigen::Triplet<double>& w : weights) sum[w.row()] += w.value();
   for (Eigen::Index v = 0; v < as_read.rows(); ++v) as_read.row(v) /= sum[v];
-  const std::vector<int> places = alike_places(mesh.x, as_read);
-  join_at(places, mesh, name);
+  const Surface surface = surface_of(mesh.x, whole(mesh.triangles));
+  const std::vector<int> stands_for = joined_where_open(surface, alike_places(mesh.x, as_read), parts);
+  join_at(stands_for, mesh, name);
   std::vector<Eigen::Triplet<double>> kept;
   for (int v = 0; v < as_read.rows(); ++v)
-    for (Weights::InnerIterator w(as_read, v); places[v] == v && w; ++w)
+    for (Weights::InnerIterator w(as_read, v); stands_for[v] == v && w; ++w)
       kept.emplace_back(mesh.welded[v], w.col(), w.value());
   Weights joined(mesh.x.rows(), joints);
   joined.setFromTriplets(kept.begin(), kept.end());

@@ -1,5 +1,8 @@
 #include "pipeline/formats/npy.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -17,6 +20,7 @@ namespace {
 
 struct Header {
   std::string type;  // numpy's descr, such as "<f8"
+  bool big_endian = false;
   bool fortran_order = false;
   std::vector<std::size_t> shape;
   std::size_t count = 1;  // of values
@@ -141,9 +145,7 @@ Header read_header(std::string_view bytes, const NpyPlace& place) {
     if (__builtin_mul_overflow(header.count, extent, &header.count))
       fail_broken("has a shape that no memory holds", place);
   if (header.type.find('O') != std::string::npos) fail_pickled(place);
-  if (header.type.starts_with('>'))
-    throw Error(fmt::format("is big-endian ({})", header.type), place.text(),
-                "save it with .astype('<" + header.type.substr(1) + "')");
+  header.big_endian = header.type.starts_with('>');
   return header;
 }
 
@@ -187,7 +189,7 @@ NpyArray<T> in_c_order(const Header& header, const Value& value) {
 // Calls `use` with a value of the type that a number is stored as; false for other types.
 template <class Use>
 bool with_number_type(const std::string& type, const Use& use) {
-  const std::string plain = type.empty() ? "" : type.substr(type.find_first_not_of("<|=") == 0 ? 0 : 1);
+  const std::string plain = type.empty() ? "" : type.substr(type.find_first_not_of("<>|=") == 0 ? 0 : 1);
   if (plain == "f8") return use(double{}), true;
   if (plain == "f4") return use(float{}), true;
   if (plain == "f2") return use(Half{}), true;
@@ -202,6 +204,15 @@ bool with_number_type(const std::string& type, const Use& use) {
   return false;
 }
 
+// The i-th value as the machine has it.
+template <class Stored>
+Stored value_at(std::string_view values, std::size_t i, bool big_endian) {
+  std::array<char, sizeof(Stored)> bytes;
+  std::memcpy(bytes.data(), values.data() + i * bytes.size(), bytes.size());
+  if (big_endian) std::ranges::reverse(bytes);
+  return std::bit_cast<Stored>(bytes);
+}
+
 // `convert` turns a stored value into a T.
 template <class T, class Convert>
 NpyArray<T> read_array(std::string_view bytes, const NpyPlace& place, const Convert& convert) {
@@ -210,8 +221,7 @@ NpyArray<T> read_array(std::string_view bytes, const NpyPlace& place, const Conv
   const bool known = with_number_type(header.type, [&]<class Stored>(Stored) {
     const std::string_view values = values_of(bytes, header, sizeof(Stored), place);
     array = in_c_order<T>(header, [&](std::size_t i) {
-      Stored value;
-      std::memcpy(&value, values.data() + i * sizeof value, sizeof value);
+      const auto value = value_at<Stored>(values, i, header.big_endian);
       if constexpr (std::is_same_v<Stored, Half>)
         return convert(half_value(value.word));
       else
@@ -277,8 +287,7 @@ NpyArray<std::string> npy_texts(std::string_view bytes, const NpyPlace& place) {
     if (unit == 1) return std::string(padded.substr(0, padded.find_last_not_of('\0') + 1));
     std::string text;
     for (std::size_t k = 0; k < length; ++k)
-      if (const std::size_t code = little_endian(padded.substr(4 * k, 4)); code != 0)
-        append_utf8(text, static_cast<std::uint32_t>(code));
+      if (const auto code = value_at<std::uint32_t>(padded, k, header.big_endian); code != 0) append_utf8(text, code);
     return text;
   });
 }

@@ -24,8 +24,8 @@ struct NpyPlace {
 };
 
 // Arrays from the bytes of an .npy file (format versions 1 to 3 of numpy.lib.format), stored in C or Fortran order,
-// little-endian. Throws Error for bytes that are no such file or do not have the length that the shape says, for
-// pickled Python objects (which are never read), and for values of another kind.
+// little-endian or big-endian. Throws Error for bytes that are no such file or do not have the length that the shape
+// says, for pickled Python objects (which are never read), and for values of another kind.
 
 // Floats of 16, 32 and 64 bits, integers and booleans.
 NpyArray<double> npy_numbers(std::string_view bytes, const NpyPlace&);

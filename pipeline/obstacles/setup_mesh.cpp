@@ -1,6 +1,7 @@
 #include "pipeline/obstacles/setup_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,12 +18,17 @@ namespace {
 
 constexpr double smallest = 0.01;  // least diagonal of a cloth or a body [m]
 
-// The unit, a power of ten, that brings an extent [m] nearest to a metre, and the extent in it.
-std::string likely_unit(double extent) {
-  const double unit = std::pow(10.0, -std::round(std::log10(std::max(extent, 1e-9))));
-  const std::string word = fmt::format("{:g} m", unit);
-  const std::string name = word == "0.1 m" ? "dm" : word == "0.01 m" ? "cm" : word == "0.001 m" ? "mm" : word;
-  return fmt::format("`unit: {}` makes it {:.3g} m", name, unit * extent);
+// What brings an extent [m] nearest to a metre, by a power of ten, and the extent then: a unit that files have, else a
+// scale, in the place of the one that there is.
+std::string likely_cure(double extent, double scale) {
+  const int power = static_cast<int>(-std::round(std::log10(std::max(extent, 1e-9))));
+  const double factor = std::pow(10.0, power);
+  constexpr std::array units{"dm", "cm", "mm"};
+  if (power < 0 && -power <= std::ssize(units))
+    return fmt::format("if its file is not in metres, say so by the key `unit` (`unit: {}` makes it {:.3g} m)",
+                       units[static_cast<std::size_t>(-power - 1)], factor * extent);
+  return fmt::format("if that is not its size, give it another by the key `scale` (`scale: {:g}` makes it {:.3g} m)",
+                     factor * scale, factor * extent);
 }
 
 }  // namespace
@@ -52,12 +58,12 @@ void refuse_far(const Config& at, const std::string& noun, const Points& x) {
                           largest_length));
 }
 
-void warn_of_extent(const Config& at, const std::string& noun, double largest, const Points& x,
-                    std::vector<std::string>& warnings) {
-  const double extent = box_diagonal(x);
-  if (at["unit"].given || (extent <= largest && extent >= smallest)) return;
-  warnings.push_back(fmt::format("{} spans {:.3g} m; if its file is not in metres, say so by the key `unit` ({})", noun,
-                                 extent, likely_unit(extent)));
+void warn_of_extent(const Config& section, const std::string& kind, const std::string& noun, double largest,
+                    const Points& x, const Triangles& triangles, std::vector<std::string>& warnings) {
+  const double extent = box_diagonal(x(triangles.reshaped(), Eigen::all));
+  if (section[kind]["unit"].given || (extent <= largest && extent >= smallest)) return;
+  const std::string cure = likely_cure(extent, section["scale"].number());
+  warnings.push_back(fmt::format("{} spans {:.3g} m; {}", noun, extent, cure));
 }
 
 }  // namespace selvedge

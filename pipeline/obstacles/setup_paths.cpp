@@ -84,10 +84,12 @@ fs::path expanded_path(const Config& at, const std::string& text, const fs::path
 fs::path existing_path(const Config& at, const std::string& text, const fs::path& folder) {
   const fs::path path = expanded_path(at, text, folder);
   std::error_code ignored;
+  const bool of_option = at.where.starts_with("--") && !at.where.starts_with("--set ");
   if (!fs::exists(path, ignored))
-    at.fail("names the missing file " + path.string(), text.find("SELVEDGE_DATA") == std::string::npos
-                                                           ? "paths are relative to the scene file"
-                                                           : "set SELVEDGE_DATA to the folder of the data");
+    at.fail("names the missing file " + path.string(), text.find("SELVEDGE_DATA") != std::string::npos
+                                                           ? "set SELVEDGE_DATA to the folder of the data"
+                                                       : of_option ? "check the path"
+                                                                   : "paths are relative to the scene file");
   return path;
 }
 

@@ -44,6 +44,11 @@ nb::object as_rows(const nb::handle& array, const char* type, const char* kinds,
   return as_array(array, type, kinds, 2, "rows of three, n x 3", where);
 }
 
+bool is_mask(const nb::handle& array) {
+  const nb::object given = nb::module_::import_("numpy").attr("asarray")(array);
+  return nb::cast<std::string>(given.attr("dtype").attr("kind")) == "b";
+}
+
 // An array of numpy's that owns its numbers; Array has data().
 template <class Number, class Array>
 nb::object copied(const Array& array, std::initializer_list<std::size_t> shape) {
@@ -81,7 +86,13 @@ Triangles triangles_of(const nb::handle& array, Eigen::Index vertices, const std
 }
 
 std::vector<int> vertices_of(const nb::handle& array, Eigen::Index vertices, const std::string& where) {
-  const nb::object list = as_array(array, "int64", "iu", 1, "a list of vertices", where);
+  nb::object list = as_array(array, "int64", "iub", 1, "a list of vertices", where);
+  if (is_mask(array)) {
+    if (static_cast<Eigen::Index>(nb::len(list)) != vertices)
+      throw Error("is a mask of " + std::to_string(nb::len(list)) + " vertices, there are " + std::to_string(vertices),
+                  where, "give a bool a vertex, or a list of vertices");
+    list = nb::module_::import_("numpy").attr("flatnonzero")(list);
+  }
   const auto view = nb::cast<nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>>(list);
   std::vector<int> all;
   for (std::size_t k = 0; k < view.shape(0); ++k) {
@@ -111,6 +122,14 @@ std::vector<Points> frames_of(const nb::handle& array, const std::string& where)
     frames.push_back(
         Eigen::Map<const Points>(view.data() + f * view.shape(1) * 3, static_cast<Eigen::Index>(view.shape(1)), 3));
   return frames;
+}
+
+nb::list list_of(const nb::handle& items, const std::string& where, const std::string& cure) {
+  PyObject* list = PySequence_List(items.ptr());
+  if (list) return nb::steal<nb::list>(list);
+  if (!PyErr_ExceptionMatches(PyExc_TypeError)) throw nb::python_error();
+  PyErr_Clear();
+  throw Error("is no list", where, cure);
 }
 
 void warn(const std::vector<std::string>& warnings) {

@@ -18,13 +18,17 @@ Points points_of(const nanobind::handle& array, const std::string& where, NotFin
 // The same of vertex indices, m x 3 whole numbers of 0 .. vertices - 1.
 Triangles triangles_of(const nanobind::handle& array, Eigen::Index vertices, const std::string& where);
 
-// A list of some of 0 .. vertices - 1, as these ascending, each once. Throws Error for others.
+// A list of some of 0 .. vertices - 1, or a mask of them: a bool a vertex. As these ascending, each once. Throws Error
+// for others.
 std::vector<int> vertices_of(const nanobind::handle& array, Eigen::Index vertices, const std::string& where);
 
 // A matrix of numbers, which may be anything; rows of three for each of several frames. Both throw Error for other
 // shapes and for what is no number.
 Eigen::MatrixXd matrix_of(const nanobind::handle& array, const std::string& where);
 std::vector<Points> frames_of(const nanobind::handle& array, const std::string& where);
+
+// What Python can go through, such as a tuple or a generator, as a list. Throws Error with the cure for other objects.
+nanobind::list list_of(const nanobind::handle& items, const std::string& where, const std::string& cure);
 
 // As Python's UserWarning, one each. Throws what Python raises where its filters make errors of warnings.
 void warn(const std::vector<std::string>& warnings);

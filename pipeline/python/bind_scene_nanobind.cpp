@@ -62,9 +62,9 @@ struct BesideOthers {
   std::exception_ptr trouble;
 };
 
-nb::list step_scenes(const nb::list& scenes) {
+nb::list step_scenes(const nb::handle& scenes) {
   std::vector<SceneObject*> all;
-  for (const nb::handle item : scenes) {
+  for (const nb::handle item : list_of(scenes, "step, scenes", "give a list of scenes")) {
     const std::string where = "step, scene " + std::to_string(all.size());
     if (!nb::isinstance<SceneObject>(item)) throw Error("is no Scene", where, "give a list of scenes");
     SceneObject* scene = nb::inst_ptr<SceneObject>(item);

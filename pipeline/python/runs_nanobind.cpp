@@ -4,6 +4,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/compare/compare.hpp"
 #include "pipeline/drapes/make_drapes.hpp"
@@ -39,7 +41,8 @@ nb::object fit_of(const Path& run, const std::optional<Path>& scene, const std::
                   const std::optional<Path>& regions, std::optional<int> frame, std::optional<double> reach,
                   const std::optional<Path>& out) {
   if (frame && *frame < 0) throw Error("is " + std::to_string(*frame), "fit, frame", "give 0 or more");
-  if (reach && !(*reach > 0)) throw Error("is " + std::to_string(*reach), "fit, reach", "give a length above 0 [m]");
+  if (reach && !(*reach > 0 && std::isfinite(*reach)))
+    throw Error("is " + std::to_string(*reach), "fit, reach", "give a length above 0 [m]");
   const FitRequest request{
       run, scene.value_or(""), body, regions.value_or(""), frame.value_or(-1), reach.value_or(0), out.value_or("")};
   const FitReport report = unlocked([&] { return fit(request); });

@@ -34,7 +34,7 @@ Config section_of(const nb::dict& values, const Section& section, const std::str
     const nb::object plain = nb::module_::import_("operator").attr("methodcaller")("tolist");  // of numpy's numbers
     text = nb::cast<std::string>(nb::module_::import_("json").attr("dumps")(values, "default"_a = plain));
   } catch (const nb::python_error& error) {
-    throw Error(std::string("holds what a scene file cannot say: ") + error.what(), where,
+    throw Error(std::string("holds what a scene file cannot say: ") + nb::str(error.value()).c_str(), where,
                 "give numbers, texts, lists and dictionaries");
   }
   return read_section(text, section, where);

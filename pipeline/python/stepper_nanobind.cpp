@@ -157,6 +157,8 @@ MakeStepper python_maker(const std::string& kind, const nb::handle& type, const 
 Kinds kinds_with(const nb::dict& types, const HeldObjects& held) {
   Kinds kinds = known_kinds();
   for (const auto& [key, type] : types) {
+    if (!nb::isinstance<nb::str>(key))
+      throw Error(std::string("has the name ") + nb::repr(key).c_str(), "kinds", "name each class by a text");
     const std::string name = nb::cast<std::string>(key);
     kinds.add({.name = name,
                .maker = [maker = python_maker(name, type, held)](const Setup&, const Config&) { return maker; }});

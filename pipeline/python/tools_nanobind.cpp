@@ -43,10 +43,10 @@ void add_mesh(const nb::handle& x, const nb::handle& triangles, const std::strin
 }
 
 // The cloth, then the bodies.
-Meshes meshes_of(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
+Meshes meshes_of(const nb::handle& x, const nb::handle& triangles, const nb::handle& bodies) {
   Meshes meshes;
   add_mesh(x, triangles, "", "", meshes);
-  for (const nb::handle body : bodies) {
+  for (const nb::handle body : list_of(bodies, "bodies", "give a list of (x, triangles)")) {
     const std::string where = "body " + std::to_string(meshes.points.size() - 1);
     if (!nb::isinstance<nb::sequence>(body) || nb::len(body) != 2)
       throw Error("is no pair", where, "give (x, triangles) for every body");
@@ -55,7 +55,7 @@ Meshes meshes_of(const nb::handle& x, const nb::handle& triangles, const nb::lis
   return meshes;
 }
 
-nb::dict check_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
+nb::dict check_arrays(const nb::handle& x, const nb::handle& triangles, const nb::handle& bodies) {
   const Meshes meshes = meshes_of(x, triangles, bodies);
   std::vector<AuditBody> obstacles;
   for (std::size_t k = 1; k < meshes.points.size(); ++k) obstacles.push_back({&meshes.surfaces[k], &meshes.points[k]});
@@ -68,7 +68,7 @@ nb::dict check_arrays(const nb::handle& x, const nb::handle& triangles, const nb
   return result;
 }
 
-nb::tuple untangle_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies, int iterations) {
+nb::tuple untangle_arrays(const nb::handle& x, const nb::handle& triangles, const nb::handle& bodies, int iterations) {
   const Meshes meshes = meshes_of(x, triangles, bodies);
   const std::vector<SheetView> sheets = sheets_of(meshes);
   if (iterations < 0) throw Error("is " + std::to_string(iterations), "untangle, iterations", "give 0 or more");
@@ -95,7 +95,7 @@ Points contour_points(const std::vector<SheetView>& sheets, const Segments& foun
   return x;
 }
 
-nb::list contours_of_arrays(const nb::handle& x, const nb::handle& triangles, const nb::list& bodies) {
+nb::list contours_of_arrays(const nb::handle& x, const nb::handle& triangles, const nb::handle& bodies) {
   const Meshes meshes = meshes_of(x, triangles, bodies);
   const std::vector<SheetView> sheets = sheets_of(meshes);
   const Segments found = unlocked([&] { return find_segments(sheets); });
@@ -196,19 +196,19 @@ nb::dict read_cache(const std::filesystem::path& file) {
 }  // namespace
 
 void bind_tools(nb::module_& module) {
-  module.def("check", &check_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(),
+  module.def("check", &check_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::tuple(),
              "Audits a cloth, with itself and with bodies that stand still. x: positions, n x 3 [m]; triangles: m x 3; "
              "bodies: list of (x, triangles). Returns counts: self_pairs (triangles that share no vertex and "
              "intersect), vertex_pairs (that share one and cross), body_pairs, inside_vertices (of the cloth, in "
              "closed bodies).");
-  module.def("contours", &contours_of_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(),
+  module.def("contours", &contours_of_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::tuple(),
              "The curves along which a cloth crosses itself or bodies, arguments as for check. Returns for each: "
              "points, k x 3 [m]; closed; length [m]; sides, two of sheet (0: the cloth, k: body k - 1), triangles (one "
              "a segment) and inside (vertices of the smaller part that the curve cuts off).");
   module.def("distance", &distance_of_arrays, "points"_a, "x"_a, "triangles"_a,
              "Signed distances of points, p x 3 [m], from a surface. Returns value, p [m], below 0 inside; gradient, "
              "p x 3, of unit length; closest, p x 3 [m]; triangle, p.");
-  module.def("untangle", &untangle_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::list(), "iterations"_a = 300,
+  module.def("untangle", &untangle_arrays, "x"_a, "triangles"_a, "bodies"_a = nb::tuple(), "iterations"_a = 300,
              "Parts a cloth from itself and from bodies, arguments as for check. Returns positions, n x 3 [m], and a "
              "report: pairs_before, pairs_after, iterations.");
   module.def("read_surfaces", &read_surfaces, "run"_a, "obstacles"_a = false,

@@ -140,7 +140,8 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   part.mesh.x = worn ? skinned_at(*part.worn, 0) : placed(section, part.mesh.x);
   refuse_far(section, "cloth `" + part.name + "`", part.mesh.x);
   if (section["mesh"].given)
-    warn_of_extent(section["mesh"], "cloth `" + part.name + "`", largest_cloth, part.mesh.x, warnings);
+    warn_of_extent(section, "mesh", "cloth `" + part.name + "`", largest_cloth, part.mesh.x, part.mesh.triangles,
+                   warnings);
   if (!worn) sew(section["seams"], folder, part, warnings);
   if (section["mesh"].given) warn_of_coincident(part, warnings);
   if (of_file) warn_of_faults(part, warnings);

@@ -187,13 +187,21 @@ class RunSurfaces {
     return [binding = std::move(binding)](const PointsF& all) { return driven(binding, all); };
   }
 
+  double onto_metres() const {
+    try {
+      return metres_per_unit(request_.onto_unit);
+    } catch (const Error& error) {
+      throw Error(error.problem(), "--onto-unit", error.cure());
+    }
+  }
+
   void add_driven() {
     if (!request_.cloth.empty() && std::ranges::find(info().cloth_names, request_.cloth) == info().cloth_names.end())
       throw Error("is no cloth of the run", "--cloth " + request_.cloth,
                   "cloths: " + joined(info().cloth_names) + suggestion(request_.cloth, info().cloth_names));
     Mesh mesh = read_mesh(request_.onto);
     read_materials(mesh);
-    mesh.x *= metres_per_unit(request_.onto_unit);
+    mesh.x *= onto_metres();
     std::vector<int> drivers, rows;
     for (int c = 0; c < cloths(); ++c)
       if (is_driver(c)) drivers.push_back(c);

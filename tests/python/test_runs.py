@@ -128,6 +128,9 @@ def test_some_frames_and_an_array_in_a_file(run, tmp_path):
     assert some["obstacles"][0]["x"].shape == whole["obstacles"][0]["x"][2::3].shape
     some["x"].flush()
     assert (np.load(tmp_path / "x.npy", mmap_mode="r") == some["x"]).all()
+    with pytest.raises(selvedge.Error, match="x.npy: cannot write (.|\n)*cure: give a file in a folder"):
+        selvedge.read_trajectory(run, into=tmp_path / "absent" / "x.npy")
+    assert not (tmp_path / "absent").exists()
     with pytest.raises(selvedge.Error, match="nothing to map"):
         selvedge.read_trajectory(run, slice(0, 0), tmp_path / "none.npy")
     assert selvedge.read_trajectory(run, slice(0, 0))["x"].shape == (0, *whole["x"].shape[1:])
@@ -183,7 +186,13 @@ def test_a_notebook_shows_the_page_in_a_frame(run, tmp_path):
     assert shown.startswith("<iframe srcdoc=") and "<script" not in shown and shown.count('"') == 4
     assert page.save(tmp_path / "page.html").read_text(encoding="utf-8") == page.text
     assert "MB" in repr(page) and "run" in repr(page)
-    assert len(selvedge.view([run, run]).runs) == 2
+    assert selvedge.view((run, run), limit=np.int64(0)).runs == [os.fspath(run)] * 2
+    refused = [(run, -1, "limit is -1"), (run, 1.5, "limit is 1.5"), (7, 0, "runs is 7"), ([7], 0, "runs is")]
+    for runs, limit, words in refused:
+        with pytest.raises(selvedge.Error, match=f"view: {words}(.|\n)*cure: give"):
+            selvedge.view(runs, limit=limit)
+    with pytest.raises(selvedge.Error, match="absent.*cannot write"):
+        selvedge.view(run).save(tmp_path / "absent" / "page.html")
 
 
 def test_reprs_say_sizes():
@@ -252,7 +261,11 @@ def test_scenes_side_by_side_have_the_bits_of_scenes_one_by_one():
         assert selvedge.step(beside) == [scene.step() for scene in alone] == 5 * [True]
     for a, b in zip(alone, beside):
         assert (a.x == b.x).all() and (a.v == b.v).all() and a.frame == b.frame == 6
-    assert selvedge.step([]) == []
+    assert selvedge.step([]) == selvedge.step(()) == []
+    assert selvedge.step(scene for scene in alone[:2]) == selvedge.step(tuple(beside[:2])) == 2 * [True]
+    assert (alone[1].x == beside[1].x).all()
+    with pytest.raises(selvedge.Error, match="step, scenes: is no list"):
+        selvedge.step(alone[0])
     with pytest.raises(selvedge.Error, match="twice"):
         selvedge.step([alone[0], alone[0]])
     with pytest.raises(selvedge.Error, match="scene 1: is no Scene"):
@@ -288,7 +301,9 @@ def test_the_fit_has_a_number_a_vertex(run, scene_file, tmp_path):
     fit = selvedge.fit(run, scene=scene_file, body="ball", frame=3)
     n = selvedge.read_trajectory(run)["x"].shape[1]
     assert fit["frame"] == 3 and all(fit[name].shape == (n,) for name in ("gap", "strain", "pressure", "row"))
-    for wrong, words in [({"frame": -1}, "frame"), ({"reach": 0.0}, "reach"), ({"body": "bal"}, "bal")]:
+    wrongs = [({"frame": -1}, "frame"), ({"body": "bal"}, "bal")]
+    wrongs += [({"reach": reach}, "reach") for reach in (0.0, np.inf, np.nan)]
+    for wrong, words in wrongs:
         with pytest.raises(selvedge.Error, match=words):
             selvedge.fit(run, scene=scene_file, **wrong)
 

@@ -187,6 +187,44 @@ def test_check_and_untangle():
     assert selvedge.check(moved, both[1])["self_pairs"] == report["pairs_after"]
 
 
+def test_bodies_come_in_any_sequence():
+    x, triangles = sheet(9)
+    body = (np.stack([x[:, 0] * 0.3 + 0.355, x[:, 2] * 0.3 - 0.2, np.full(len(x), 0.513)], axis=1), triangles)
+    alone = selvedge.check(x, triangles, [body])
+    assert alone["body_pairs"] > 0
+    in_array = np.empty(1, object)
+    in_array[0] = body
+    for bodies in [(body,), [list(body)], iter([body]), {"only": body}.values(), in_array]:
+        assert selvedge.check(x, triangles, bodies) == alone
+    assert selvedge.untangle(x, triangles, (body,))[1]["pairs_before"] > 0
+    assert len(selvedge.contours(x, triangles, ())) == 0
+    for bodies, words in [(5, "bodies: is no list"), (body, "body 0: is no pair")]:
+        with pytest.raises(selvedge.Error, match=words):
+            selvedge.check(x, triangles, bodies)
+
+
+def test_what_no_scene_file_can_say_is_refused_in_a_line():
+    x, triangles = sheet(4)
+    with pytest.raises(selvedge.Error, match="material: holds what a scene file cannot say") as error:
+        selvedge.Scene().add_cloth(x, triangles, material={"density": {1}})
+    assert "Traceback" not in str(error.value) and len(str(error.value).splitlines()) == 2
+
+
+def test_pins_are_a_list_or_a_mask():
+    x, triangles = sheet(9)
+    held = np.isclose(x[:, 0], x[:, 0].min())
+    ends = []
+    for pins in (np.flatnonzero(held), held, held.tolist(), np.flatnonzero(held).astype(">i4")):
+        scene = selvedge.Scene()
+        scene.add_cloth(x.astype(">f8"), triangles, pins=pins)
+        selvedge.simulate(scene, 2)
+        ends.append(scene.x.copy())
+        assert (ends[-1][held] == x[held]).all() and (ends[-1] == ends[0]).all()
+    for mask in (held[1:], np.stack([held, held])):
+        with pytest.raises(selvedge.Error, match="pins: "):
+            selvedge.Scene().add_cloth(x, triangles, pins=mask)
+
+
 def turns_beside(work):
     """How often another thread has its turn while the work is done."""
     turns, done = [], threading.Event()

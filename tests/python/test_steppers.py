@@ -144,6 +144,8 @@ def test_forces_that_it_ignores_have_no_energy(scene_file, tmp_path):
     comparison = COMPARISON.replace("conventional", "blind").replace("states: 0", "states: 1, horizon: 2")
     (tmp_path / "comparison.yaml").write_text(comparison)
     kinds = {"thrown": Thrown, "blind": Blind}
+    with pytest.raises(selvedge.Error, match="kinds: has the name 3"):
+        selvedge.compare(tmp_path / "comparison.yaml", kinds={3: Thrown}, out=tmp_path / "out")
     result = selvedge.compare(tmp_path / "comparison.yaml", kinds=kinds, out=tmp_path / "out")
     decay = {row["setting"]: row["decay"] for row in result["rows"]}
     assert decay["blind"] is None and decay["thrown"] is not None

@@ -2,7 +2,7 @@
 # and docstrings to the extension; docstrings say shapes and units.
 import os
 import pathlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypedDict, overload
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .steppers import Stepper
 
 Path = str | os.PathLike[str]
-Bodies = list[tuple[npt.ArrayLike, npt.ArrayLike]]
+Bodies = Iterable[tuple[npt.ArrayLike, npt.ArrayLike]]
 Numbers = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 Material = str | Mapping[str, Any]
@@ -291,7 +291,7 @@ def compare(
     finished is kept in the folder out, by the file's settings: empty it when a class has changed. log: called with a
     line as each part ends; None: silent. Ctrl-C keeps the parts that are done. Returns what compare.json holds, and
     table, a text."""
-def step(scenes: list[Scene]) -> list[bool]:
+def step(scenes: Iterable[Scene]) -> list[bool]:
     """Steps every scene of a list by one frame, a thread a scene, on the threads that there are (OMP_NUM_THREADS), with
     the same bits as one by one. Returns what Scene.step returns, a list. Where a scene raises an error, the others are
     stepped all the same."""

@@ -6,7 +6,8 @@ import html
 import operator
 import os
 import pathlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
+from typing import SupportsIndex
 
 from ._selvedge import Error, Scene, export_run, page_of
 from .progress import progress_bar
@@ -26,12 +27,7 @@ def simulate(
     with the scene after every frame, returns False. out: a folder in which run.h5 gets the present state and every
     frame after it, for read_trajectory, export and view; results of an earlier run there are removed. progress: a bar
     of tqdm; None: if tqdm is installed, in a notebook or on a terminal. Returns the frame that was reached."""
-    try:
-        frames = scene.frames if frames is None else operator.index(frames)
-    except TypeError:
-        raise Error(f"simulate: frames is {frames!r}\n  cure: give a whole number") from None
-    if frames < 0:
-        raise Error(f"simulate: frames is {frames}\n  cure: give 0 or more")
+    frames = scene.frames if frames is None else _whole_number("simulate: frames", frames)
     if out is not None:
         scene._record(out)
     try:
@@ -68,7 +64,10 @@ class Page:
     def save(self, file: Path) -> pathlib.Path:
         """Writes the page, and returns where it is."""
         path = pathlib.Path(file)
-        path.write_text(self.text, encoding="utf-8")
+        try:
+            path.write_text(self.text, encoding="utf-8")
+        except OSError as why:
+            raise Error(f"{path}: cannot write ({why.strerror})\n  cure: give a file that may be written") from None
         return path
 
     def _repr_html_(self) -> str:
@@ -81,8 +80,21 @@ class Page:
         return f"<selvedge.Page of {', '.join(self.runs)}: {len(self.text) / 1e6:.1f} MB>"
 
 
-def view(runs: Path | Sequence[Path], *, limit: int = 60_000_000) -> Page:
+def view(runs: Path | Iterable[Path], *, limit: int = 60_000_000) -> Page:
     """The page that plays a run, or several side by side (trajectories, or folders of runs). limit: of its geometry, in
     bytes: runs above their share of it are drawn at every k-th frame."""
-    all_runs = [runs] if isinstance(runs, (str, os.PathLike)) else list(runs)
-    return Page(page_of(all_runs, limit), [os.fspath(run) for run in all_runs])
+    try:
+        all_runs = [os.fspath(run) for run in ([runs] if isinstance(runs, (str, os.PathLike)) else runs)]
+    except TypeError:
+        raise Error(f"view: runs is {runs!r}\n  cure: give a run, or a list of runs") from None
+    return Page(page_of(all_runs, _whole_number("view: limit", limit)), all_runs)
+
+
+def _whole_number(name: str, value: SupportsIndex) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise Error(f"{name} is {value!r}\n  cure: give a whole number") from None
+    if not 0 <= number < 2**63:
+        raise Error(f"{name} is {number}\n  cure: give 0 or more, below 2**63")
+    return number

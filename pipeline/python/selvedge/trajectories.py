@@ -137,4 +137,9 @@ def _array(into: Path | None, shape: tuple[int, ...]) -> Floats:
         return np.empty(shape, dtype=np.float32)
     if 0 in shape:
         raise Error(f"{os.fspath(into)}: there is nothing to map into memory: {shape[0]} frames of {shape[1]} vertices")
-    return np.lib.format.open_memmap(os.fspath(into), mode="w+", dtype=np.float32, shape=shape)
+    try:
+        return np.lib.format.open_memmap(os.fspath(into), mode="w+", dtype=np.float32, shape=shape)
+    except OSError as why:
+        raise Error(
+            f"{os.fspath(into)}: cannot write ({why.strerror})\n  cure: give a file in a folder that may be written"
+        ) from None

@@ -125,6 +125,18 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
     REQUIRE(outcome.err.find("absent") != std::string::npos);
     REQUIRE(outcome.err.find("cure:") != std::string::npos);
   }
+  const std::string mesh = fake::write(folder, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n").string();
+  for (const auto& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
+           {"fit absent --reach 0", "--reach: is `0`; give a number above 0"},
+           {"fit absent --reach nan", "--reach: is `nan`; give a number above 0"},
+           {"fit absent --frame -1", "--frame: is `-1`; give a number of at least 0"},
+           {"push " + mesh + " " + mesh + " --out b.obj --margin inf", "--margin: is `inf`; give"},
+           {"dress " + mesh + " --body absent.h5 --out b.h5", "absent.h5\n  cure: check the path"}}) {
+    const Ended outcome = selvedge_program(folder, arguments);
+    INFO(arguments << "\n" << outcome.err);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find(words) != std::string::npos);
+  }
   const Ended magic = selvedge_program(folder, "simulate " + scene + " --stepper magic");
   REQUIRE(magic.status == 2);
   REQUIRE(magic.err.find("icm") != std::string::npos);

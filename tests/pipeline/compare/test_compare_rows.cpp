@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
@@ -177,6 +179,34 @@ TEST_CASE("compare: a row that exceeds its limits ends, and stays with what was 
   CHECK_THAT(slow.trouble, Contains("ended by `limits` after frame 0 of 5: not done in 1e-09 s"));
   CHECK(std::isnan(slow.ms));
   CHECK(slow.measures.at("finished") == 0);
+}
+
+TEST_CASE("compare: a finished scene of which a part is lost or cut off is measured anew", "[compare]") {
+  const Folder folder("compare_lost_part");
+  CompareRequest request;
+  request.file = configs / "compare" / "short.yaml";
+  request.out = folder.path;
+  request.overrides = {"settings=[{name: carried, stepper: carried}]"};
+  const CompareRow first = row_named(compare(request), "carried");
+  for (const std::string part : {"floor.json", "errors_0.json", "run_0_0.json"}) {
+    const auto file = cell_folder(folder.path, "hang") / part;
+    const std::string whole = fake::whole(file);
+    for (const std::size_t length : {whole.size() / 2, std::size_t(0)}) {
+      std::ofstream(file) << whole.substr(0, length);
+      std::ostringstream log;
+      request.log = &log;
+      const CompareRow again = row_named(compare(request), "carried");
+      CHECK_THAT(log.str(), !Contains("hang: kept from before"));
+      CHECK(again.temporal == first.temporal);
+      CHECK(again.floor == first.floor);
+      CHECK(again.ms > 0);
+      CHECK(fake::whole(file).size() > whole.size() / 2);
+    }
+  }
+  std::ostringstream log;
+  request.log = &log;
+  compare(request);
+  CHECK_THAT(log.str(), Contains("hang: kept from before"));
 }
 
 TEST_CASE("compare: the limit of time holds for a row's frames from the common states", "[compare]") {

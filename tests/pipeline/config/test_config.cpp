@@ -201,6 +201,37 @@ TEST_CASE("Files that are no scenes are refused", "[config]") {
   CHECK_THROWS_AS(read_setup(folder.path), Error);
 }
 
+TEST_CASE("An alias has values of its own, and merge keys are put in", "[config]") {
+  const Folder folder("config_merge");
+  const auto file = fake::write(folder, "scene.yaml",
+                                "cloths:\n"
+                                "  - &a\n"
+                                "    name: a\n"
+                                "    rectangle: {resolution: 3}\n"
+                                "    material: &m {density: &d 0.3, bending: 2e-5}\n"
+                                "  - {name: b, <<: *a, material: {<<: [{density: 0.4}, *m]}}\n"
+                                "  - {name: c, rectangle: {resolution: 4}, material: *m}\n"
+                                "  - *a\n"
+                                "run: {frames: 2}\n");
+  const auto density = [&](const std::vector<std::string>& overrides) {
+    const Config scene = read_config(file, scene_section(), overrides);
+    std::vector<double> all;
+    for (const Config& cloth : scene["cloths"].items) all.push_back(cloth["material"]["density"].number());
+    return all;
+  };
+  using All = std::vector<double>;
+  const Config scene = read_config(file, scene_section());
+  CHECK(density({}) == All{0.3, 0.4, 0.3, 0.3});
+  CHECK(scene["cloths"].items[1]["name"].text() == "b");
+  CHECK(scene["cloths"].items[1]["rectangle"]["resolution"].integer() == 3);
+  CHECK(scene["cloths"].items[1]["material"]["bending"].number() == 2e-5);
+  CHECK(density({"cloths.0.material.density=0.5"}) == All{0.5, 0.4, 0.3, 0.3});
+  CHECK(density({"cloths.2.material.density=0.5"}) == All{0.3, 0.4, 0.5, 0.3});
+  CHECK(density({"cloths.3.material.density=0.5"}) == All{0.3, 0.4, 0.3, 0.5});
+  const auto bad = fake::write(folder, "bad.yaml", "cloths: [{<<: 3, rectangle: {resolution: 3}}]\n");
+  CHECK_THROWS_WITH(read_config(bad, scene_section()), Contains("bad.yaml:1") && Contains("<<"));
+}
+
 TEST_CASE("A file whose aliases stand for more than memory holds is refused", "[config]") {
   const Folder folder("config_aliases");
   std::string vertices = "0", pins, cloths;

@@ -159,6 +159,7 @@ TEST_CASE("An option out of its bounds is refused with file, line and key", "[op
       {"fog: 1.5\n", {"`fog`", "from 0 to 1"}},
       {"rows: 0\n", {"`rows`", "an integer", "at least 1"}},
       {"rows: 1.5\n", {"`rows`", "not an integer"}},
+      {"rows: 3000000000\n", {"`rows`", "is `3000000000`, beyond 2e9"}},
       {"seats: many\n", {"`seats`", "or auto"}},
       {"open: perhaps\n", {"`open`", "true or false"}},
       {"colour: grren\n", {"`colour`", "red, green", "did you mean `green`"}},

@@ -120,4 +120,84 @@ TEST_CASE("weld: two layers that lie on each other are joined round the border a
   CHECK(std::count(faces.begin(), faces.end(), 1) == 2 * 2 * 2);
 }
 
+namespace {
+
+// Cubes of side 1, each beside the one before, with a face in common. `split`: each face has vertices of its own, as
+// flat shading needs them.
+Mesh cubes_in_a_row(int count, bool split) {
+  Triangles faces(12, 3);
+  faces << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5;
+  Mesh mesh;
+  const int each = split ? 24 : 8;
+  mesh.x.resize(each * count, 3);
+  mesh.triangles.resize(12 * count, 3);
+  const auto corner = [&](int cube, int k) { return Eigen::RowVector3d(cube + (k & 1), k >> 1 & 1, k >> 2); };
+  for (int cube = 0; cube < count; ++cube) {
+    for (int k = 0; k < 8 && !split; ++k) mesh.x.row(8 * cube + k) = corner(cube, k);
+    for (int t = 0; t < 12; ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int side = faces(t, k), vertex = 4 * (t / 2) + (k == 0 ? 0 : t % 2 == 0 ? k : k + 1);
+        const int own = t % 2 == 1 && k == 1 ? 4 * (t / 2) + 2 : t % 2 == 1 && k == 2 ? 4 * (t / 2) + 3 : vertex;
+        mesh.triangles(12 * cube + t, k) = each * cube + (split ? own : side);
+        if (split) mesh.x.row(24 * cube + own) = corner(cube, side);
+      }
+  }
+  return mesh;
+}
+
+// All of one joint. `parts`: the number of each cube's.
+Mesh joined_alike(Mesh mesh, const std::vector<int>& parts) {
+  std::vector<Eigen::Triplet<double>> weights;
+  std::vector<int> part;
+  const int each = static_cast<int>(mesh.x.rows()) / static_cast<int>(parts.size());
+  for (int v = 0; v < mesh.x.rows(); ++v) {
+    weights.emplace_back(v, 0, 1.0);
+    part.push_back(parts[static_cast<std::size_t>(v / each)]);
+  }
+  const auto rows = join_alike(weights, 1, part, mesh, "body.glb").rows();
+  CHECK(rows == mesh.x.rows());
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("join_alike: closed pieces that touch stay apart, split ones are closed", "[mesh_weld]") {
+  for (const bool split : {false, true}) {
+    const Mesh one = joined_alike(cubes_in_a_row(1, split), {0});
+    CHECK(one.x.rows() == 8);
+    CHECK(is_closed(surface_of(one)));
+    // Of one part each: neither the face in common nor the seams of the other cube matter.
+    const Mesh two = joined_alike(cubes_in_a_row(3, split), {0, 1, 2});
+    CHECK(two.x.rows() == 3 * 8);
+    CHECK(two.triangles.rows() == 3 * 12);
+    CHECK(is_closed(surface_of(two)));
+    CHECK(surface_of(two).component_count == 3);
+  }
+  // Of one part: closed pieces need no parts.
+  CHECK(is_closed(surface_of(joined_alike(cubes_in_a_row(2, false), {0, 0}))));
+  // A cube whose faces are split between two parts is closed over both.
+  Mesh halves = cubes_in_a_row(1, true);
+  CHECK(is_closed(surface_of(joined_alike(halves, {0, 1}))));
+}
+
+TEST_CASE("join_alike: copies and vertices of no triangle become part of what lies there", "[mesh_weld]") {
+  // Exporters repeat all vertices for each material, and draw both sides of a surface.
+  Mesh twice = cubes_in_a_row(2, false);
+  twice.x.bottomRows(8) = twice.x.topRows(8).eval();
+  for (const bool turned : {false, true}) {
+    if (turned) twice.triangles.bottomRows(12).col(1).swap(twice.triangles.bottomRows(12).col(2));
+    const Mesh one = joined_alike(twice, {0, 1});
+    CHECK(one.x.rows() == 8);
+    CHECK(one.triangles.rows() == 12);
+    CHECK(is_closed(surface_of(one)));
+  }
+  for (const bool lower : {false, true}) {
+    Mesh bare = twice;
+    bare.triangles = lower ? twice.triangles.bottomRows(12).eval() : twice.triangles.topRows(12).eval();
+    const Mesh one = joined_alike(bare, {0, 1});
+    CHECK(one.x.rows() == 8);
+    CHECK(is_closed(surface_of(one)));
+  }
+}
+
 }  // namespace selvedge::test_mesh_weld

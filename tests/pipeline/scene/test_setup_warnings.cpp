@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <sstream>
 
+#include "collision/geometry/box_diagonal.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "tests/pipeline/files.hpp"
 #include "tests/refusal.hpp"
@@ -43,7 +45,14 @@ TEST_CASE("A file in centimetres that is read as metres is told by its extent", 
   CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: big.obj}]\n"),
              Contains("`shirt` spans 84.9 m") && Contains("`unit: cm` makes it 0.849 m"));
   CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: small.obj}]\n"),
-             Contains("`shirt` spans 0.00141 m") && Contains("`unit: 1000 m` makes it 1.41 m"));
+             Contains("`shirt` spans 0.00141 m") && Contains("`scale: 1000` makes it 1.41 m"));
+  CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: small.obj, scale: 0.5}]\n"),
+             Contains("`scale: 500` makes it 0.707 m"));
+  const Setup cured = scenes.read("cloths: [{name: shirt, mesh: small.obj, scale: 1000}]\n");
+  CHECK(cured.warnings.empty());
+  CHECK(box_diagonal(cured.initial.x) == Approx(std::sqrt(2)));
+  fake::write(scenes.folder, "loose.obj", square(1) + "v 90 0 0\n");
+  CHECK_THAT(scenes.warnings("cloths: [{mesh: loose.obj}]\n"), !Contains("spans") && Contains("in no triangle"));
   fake::write(scenes.folder, "wide.obj", square(10));
   CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: wide.obj}]\n"), Contains("`unit: dm` makes it 1.41 m"));
   CHECK(scenes.warnings("cloths: [{mesh: {file: big.obj, unit: cm}}]\n").empty());

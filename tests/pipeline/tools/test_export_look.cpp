@@ -230,6 +230,8 @@ TEST_CASE("export --onto: a finer mesh in another unit goes with the nearest clo
   }
   CHECK(patch.uv.row(3).norm() == 0);  // a corner without a coordinate
 
+  request.onto_unit = "km";
+  CHECK_THROWS_WITH(export_trajectory(request), Contains("--onto-unit: unknown unit `km`"));
   request.onto_unit = "m";
   CHECK_THROWS_WITH(export_trajectory(request), Contains("from the rest shape") && Contains("--onto-unit"));
   request.cloth = "shrit";
