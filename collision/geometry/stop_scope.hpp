@@ -42,9 +42,8 @@ class StopPoll {
     return true;
   }
   bool was_wanted() const { return wanted_.load(std::memory_order_relaxed); }
-  // Asks once more, since a short loop may be done by the other threads alone.
-  void check() {
-    if (wanted()) throw Stopped();
+  void check() const {
+    if (was_wanted()) throw Stopped();
   }
 
  private:
