@@ -1,6 +1,7 @@
 #include "collision/geometry/nearest_point.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "collision/geometry/box_diagonal.hpp"
@@ -14,6 +15,7 @@ CellGrid grid_of(const Points& x) {
 
 // Looks into balls that grow: what lies outside of a ball is farther than its radius.
 NearestPoint nearest_point(const CellGrid& grid, const Points& x, const Vec3& at) {
+  assert(at.allFinite());
   NearestPoint nearest;
   if (x.rows() == 0) return nearest;
   for (double radius = grid.distance(at) + grid.edge();; radius *= 2) {

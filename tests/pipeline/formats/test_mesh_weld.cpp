@@ -166,12 +166,12 @@ TEST_CASE("join_alike: closed pieces that touch stay apart, split ones are close
     const Mesh one = joined_alike(cubes_in_a_row(1, split), {0});
     CHECK(one.x.rows() == 8);
     CHECK(is_closed(surface_of(one)));
-    // Of one part each: neither the face in common nor the seams of the other cube matter.
-    const Mesh two = joined_alike(cubes_in_a_row(3, split), {0, 1, 2});
-    CHECK(two.x.rows() == 3 * 8);
-    CHECK(two.triangles.rows() == 3 * 12);
-    CHECK(is_closed(surface_of(two)));
-    CHECK(surface_of(two).component_count == 3);
+    // Of one part each: neither the faces in common nor the seams of the other cubes matter.
+    const Mesh three = joined_alike(cubes_in_a_row(3, split), {0, 1, 2});
+    CHECK(three.x.rows() == 3 * 8);
+    CHECK(three.triangles.rows() == 3 * 12);
+    CHECK(is_closed(surface_of(three)));
+    CHECK(surface_of(three).component_count == 3);
   }
   // Of one part: closed pieces need no parts.
   CHECK(is_closed(surface_of(joined_alike(cubes_in_a_row(2, false), {0, 0}))));
