@@ -32,7 +32,7 @@ class AuditBudget {
   bool add(std::int64_t pairs) { return pairs_.add(pairs) && !stop_.wanted(); }
   bool exceeded() const { return pairs_.exceeded() || stop_.was_wanted(); }
   // Throws Stopped or TooManyPairs if the audit has to end.
-  void check() const {
+  void check() {
     stop_.check();
     pairs_.check();
   }

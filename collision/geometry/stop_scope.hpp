@@ -31,7 +31,8 @@ class StopScope {
 void check_stop();
 
 // check_stop for a loop that several threads share: all of them call wanted() now and then, and the thread that has
-// made the poll calls check() when all are through.
+// made the poll calls check() when all are through. check() asks the flag once more, since that thread may have had no
+// part of the loop.
 class StopPoll {
  public:
   StopPoll();
@@ -42,8 +43,8 @@ class StopPoll {
     return true;
   }
   bool was_wanted() const { return wanted_.load(std::memory_order_relaxed); }
-  void check() const {
-    if (was_wanted()) throw Stopped();
+  void check() {
+    if (wanted()) throw Stopped();
   }
 
  private:

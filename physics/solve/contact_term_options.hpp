@@ -18,7 +18,7 @@ struct ContactTermOptions {
   // A stopped impact may sink by this part of the gap at which it is stopped.
   static constexpr double impact_sink = 0.25;
   // Loads raise a stiffness at most this many times in a step.
-  static constexpr double max_stiffening = 100;
+  static constexpr double max_stiffening = 1e4;
   // A term is linearised anew if the cosine of its old and its new normal is larger.
   static constexpr double same_side = 0.7;
   // Static friction takes this many Gauss-Seidel sweeps over the pairs.

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/run/simulate.hpp"
+#include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/scene/setup.hpp"
 #include "pipeline/suites/stability.hpp"
 #include "pipeline/suites/stability_suite.hpp"
@@ -73,6 +75,23 @@ TEST_CASE("stability: cases pass in their short form", "[stability]") {
 }
 
 TEST_CASE("stability: the short form of the suite passes", "[stability][.long]") { check_short_form({}); }
+
+TEST_CASE("stability: contacts carry cloth 1e4 times as heavy as what lies below it; zones are left with little",
+          "[stability]") {
+  const Setup setup = read_setup(source_root() / "configs/stability/neighbours.yaml",
+                                 {"cloths.lower.rectangle.resolution=9", "cloths.upper.rectangle.resolution=8"});
+  State state = setup.initial;
+  int halved = 0, held = 0;
+  simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, 24, state,
+           [&](const FrameEvent& event) {
+             halved += event.report.collision.halved_substeps;
+             held += event.report.collision.held_vertices;
+             return true;
+           });
+  CHECK(state.frame == 24);
+  CHECK(halved < 20);  // 69 if loads raise a stiffness 100 times at most
+  CHECK(held < 20);    // 345
+}
 
 TEST_CASE("stability: energy from nowhere, numbers that are none and lasting motion are seen", "[stability]") {
   const Folder folder("watch");
