@@ -12,6 +12,7 @@
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/hdf5/hdf5_at_exit.hpp"
+#include "pipeline/host/freed_memory.hpp"
 #include "pipeline/host/interrupt.hpp"
 #include "pipeline/host/library_message.hpp"
 #include "pipeline/host/process_threads.hpp"
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
   const std::optional<std::string> limited = limit_threads();
   if (limited) std::cerr << "warning: " << *limited << "\n";
   set_up_threads(argv, limited.has_value());
+  keep_freed_memory();
   ignore_file_limit_signal();
   h5::do_nothing_at_exit();
   CLI::App app{"selvedge: a garment simulator with audited contact", "selvedge"};

@@ -42,7 +42,9 @@ void PrimitiveGroups::share_out(const Bvh& bvh, const Triangles& primitives, con
 void SearchPart::move(const Points& x0, const Points& x1, double radius, bool ends) {
   const auto from = x0.middleRows(first_node, surface->vertex_count);
   const auto to = x1.middleRows(first_node, surface->vertex_count);
-  if (radius_ == radius && ends_ == ends && from_ == from && to_ == to) return;
+  const bool same_start = radius_ == radius && from_ == from;
+  if (same_start && ends_ == ends && to_ == to) return;
+  const bool knows_start = same_start && ends_;
   radius_ = radius;
   ends_ = ends;
   from_ = from;
@@ -56,7 +58,7 @@ void SearchPart::move(const Points& x0, const Points& x1, double radius, bool en
   filled_.assign(tree.bvh.leaves.size(), 0);
   node_ends.clear();
   if (!ends) return;
-  vertex_boxes(from_, from_, radius / 2, start_);
+  if (!knows_start) vertex_boxes(from_, from_, radius / 2, start_);
   vertex_boxes(to_, to_, radius / 2, end_);
   vertices.ends.resize(vertices.groups.size());
   edges.ends.resize(edges.groups.size());

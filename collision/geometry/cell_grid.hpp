@@ -36,10 +36,16 @@ class CellGrid {
   // The same, but visits the points' places in `order`, ascending.
   template <class Visit>
   void for_each_place_near(const Vec3& at, double radius, Visit visit) const {
+    for_each_place_in((at.array() - radius).matrix(), (at.array() + radius).matrix(), visit);
+  }
+
+  // The same for the cubes that the box from `lo` to `hi` meets.
+  template <class Visit>
+  void for_each_place_in(const Vec3& lo, const Vec3& hi, Visit visit) const {
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
-      from[k] = std::max(0, coordinate(at[k] - radius, k));
-      to[k] = std::min(size_[k] - 1, coordinate(at[k] + radius, k));
+      from[k] = std::max(0, coordinate(lo[k], k));
+      to[k] = std::min(size_[k] - 1, coordinate(hi[k], k));
     }
     if (from[2] > to[2]) return;
     for (int i = from[0]; i <= to[0]; ++i)

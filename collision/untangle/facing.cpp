@@ -51,6 +51,17 @@ struct Block {
   alignas(32) float lo[9][in_a_block], hi[9][in_a_block];
 };
 
+// Two groups, vertex by vertex: places, normals and places at rest. What is left over has NaN.
+struct TwoGroups {
+  alignas(32) float at[9][2 * in_a_group];
+};
+// A vertex, and up to where others may face it: squares of lengths, widened by what rounding may do.
+struct VertexLimits {
+  float at[9];
+  float most;    // of the distance [m2]
+  float closer;  // added to the part of the distance at rest [m2]
+};
+
 template <class Lanes>
 [[gnu::always_inline]] inline void load(const float* from, Lanes& lanes) {
   __builtin_memcpy(&lanes, from, sizeof lanes);
@@ -96,11 +107,37 @@ template <class Lanes, class Flags>
   flags = (gap <= most) & (dot <= cosine) & (gap <= closer * at_rest);
 }
 
-// One bit for each group of the block.
+// Sets the flags of the vertices from `first` on, as set_flags does for groups.
+template <class Lanes, class Flags>
+[[gnu::always_inline]] inline void set_vertex_flags(const VertexLimits& a, const TwoGroups& b, int first,
+                                                    Flags& flags) {
+  constexpr float cosine = static_cast<float>(facing_cosine) + widened;
+  constexpr float closer = static_cast<float>(come_closer * come_closer) * (1 + widened);
+  Lanes gap{}, dot{}, at_rest{};
+  for (int x = 0, n = 3, r = 6; x < 3; ++x, ++n, ++r) {
+    Lanes place, normal, rest;
+    load(b.at[x] + first, place);
+    load(b.at[n] + first, normal);
+    load(b.at[r] + first, rest);
+    gap += (place - a.at[x]) * (place - a.at[x]);
+    dot += normal * a.at[n];
+    at_rest += (rest - a.at[r]) * (rest - a.at[r]);
+  }
+  flags = (gap <= a.most) & (dot <= cosine) & (gap <= closer * at_rest + a.closer);
+}
+
+// One bit for each group of the block, or for each vertex of two groups.
 unsigned may_face_plain(const Bounds& a, const Block& b, float most) {
   LaneFlags low, high;
   set_flags<Bvh::Lanes>(a, b, 0, most, low);
   set_flags<Bvh::Lanes>(a, b, 4, most, high);
+  return bits_of(low, high);
+}
+
+unsigned vertices_may_face_plain(const VertexLimits& a, const TwoGroups& b) {
+  LaneFlags low, high;
+  set_vertex_flags<Bvh::Lanes>(a, b, 0, low);
+  set_vertex_flags<Bvh::Lanes>(a, b, 4, high);
   return bits_of(low, high);
 }
 
@@ -110,8 +147,14 @@ unsigned may_face_plain(const Bounds& a, const Block& b, float most) {
   set_flags<Eight>(a, b, 0, most, flags);
   return bits_avx2(flags);
 }
+[[gnu::target("avx2")]] unsigned vertices_may_face_avx2(const VertexLimits& a, const TwoGroups& b) {
+  EightBits flags;
+  set_vertex_flags<Eight>(a, b, 0, flags);
+  return bits_avx2(flags);
+}
 #else
 constexpr auto may_face_avx2 = may_face_plain;
+constexpr auto vertices_may_face_avx2 = vertices_may_face_plain;
 #endif
 
 // Groups of a block, one bit each.
@@ -125,6 +168,8 @@ struct PosedCubes {
   const FacingBody& body;
   const Points &x, &normals;
   unsigned (*may_face)(const Bounds&, const Block&, float) = has_avx2() ? may_face_avx2 : may_face_plain;
+  unsigned (*vertices_may_face)(const VertexLimits&, const TwoGroups&) = has_avx2() ? vertices_may_face_avx2
+                                                                                    : vertices_may_face_plain;
   CellGrid grid;
   Points x_near, normals_near, rest_near;
   std::vector<int> filled;        // cubes that hold vertices
@@ -133,8 +178,11 @@ struct PosedCubes {
   std::vector<int> first_vertex;  // of each group, in the grid's order; one more at the end
   std::vector<Bounds> in_group;   // bounds of the groups, and the same in blocks
   std::vector<Block> blocks;
-  std::vector<unsigned> moved;  // of each block the groups with a vertex that has moved, one bit each
-  std::vector<char> anew;       // of each vertex in the grid's order: whether it or its partner has moved
+  std::vector<TwoGroups> by_vertex;  // four for each block
+  double largest;                    // coordinate [m]
+  double rounding;                   // that a distance in single precision may have, at most [m]
+  std::vector<unsigned> moved;       // of each block the groups with a vertex that has moved, one bit each
+  std::vector<char> anew;            // of each vertex in the grid's order: whether it or its partner has moved
 
   PosedCubes(const FacingBody& b, const Points& posed, const Points& n, const Facing* before)
       : body(b),
@@ -143,7 +191,9 @@ struct PosedCubes {
         grid(posed, b.reach / cubes_away),
         x_near(posed(grid.order(), Eigen::all)),
         normals_near(n(grid.order(), Eigen::all)),
-        rest_near(b.rest(grid.order(), Eigen::all)) {
+        rest_near(b.rest(grid.order(), Eigen::all)),
+        largest(std::max(largest_coordinate(posed), largest_coordinate(b.rest))),
+        rounding(0x1p-21 * largest) {
     for (int cube = 0; cube < grid.cubes(); ++cube) {
       first_group.push_back(static_cast<int>(in_group.size()));
       if (grid.first(cube) == grid.first(cube + 1)) continue;
@@ -159,6 +209,7 @@ struct PosedCubes {
     first_group.push_back(static_cast<int>(in_group.size()));
     first_vertex.push_back(static_cast<int>(x.rows()));
     fill_blocks();
+    fill_by_vertex();
     mark_moved(before);
   }
 
@@ -180,6 +231,42 @@ struct PosedCubes {
         block.lo[i][g % in_a_block] = g < count ? in_group[g].lo[i] : none;
         block.hi[i][g % in_a_block] = g < count ? in_group[g].hi[i] : none;
       }
+  }
+
+  void fill_by_vertex() {
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    by_vertex.resize(blocks.size() * in_a_block / 2);
+    for (std::size_t g = 0; g < blocks.size() * in_a_block; ++g)
+      for (int i = 0; i < in_a_group; ++i) {
+        const bool filled_in = g < in_group.size() && first_vertex[g] + i < first_vertex[g + 1];
+        const int p = filled_in ? first_vertex[g] + i : 0;
+        const std::size_t lane = g % 2 * in_a_group + static_cast<std::size_t>(i);
+        float(&at)[9][2 * in_a_group] = by_vertex[g / 2].at;
+        for (int k = 0; k < 3; ++k) {
+          at[k][lane] = filled_in ? static_cast<float>(x_near(p, k)) : none;
+          at[3 + k][lane] = filled_in ? static_cast<float>(normals_near(p, k)) : none;
+          at[6 + k][lane] = filled_in ? static_cast<float>(rest_near(p, k)) : none;
+        }
+      }
+  }
+
+  // Of vertex p of the grid's order, for distances up to `nearest` [m2].
+  VertexLimits limits_of(int p, double nearest) const {
+    VertexLimits limits;
+    for (int k = 0; k < 3; ++k) {
+      limits.at[k] = static_cast<float>(x_near(p, k));
+      limits.at[3 + k] = static_cast<float>(normals_near(p, k));
+      limits.at[6 + k] = static_cast<float>(rest_near(p, k));
+    }
+    // Twice the root of either square times the rounding; distances at rest are below four times the largest
+    // coordinate.
+    limits.closer = static_cast<float>(4 * rounding * (body.reach + largest) + 2 * rounding * rounding);
+    set_most(nearest, limits);
+    return limits;
+  }
+  void set_most(double nearest, VertexLimits& limits) const {
+    const double most = std::sqrt(nearest) + rounding;
+    limits.most = static_cast<float>(most * most) * (1 + widened);
   }
 
   // Without a pose before everything has moved.
@@ -234,10 +321,10 @@ int facing_vertex(const PosedCubes& posed, int p, const std::vector<Near>& near,
   const FacingBody& body = posed.body;
   const int v = posed.grid.order()[p];
   const Vec3 at = row(posed.x_near, p), normal = row(posed.normals_near, p);
-  const Bounds own = posed.bounds_of(p, p + 1);
   const bool all = posed.anew[p] != 0;
   int found = all ? -1 : known;
   double nearest = found < 0 ? body.reach * body.reach : (at - row(posed.x, found)).squaredNorm();
+  VertexLimits limits = posed.limits_of(p, nearest);
   const auto look_at = [&](int q) {
     const Vec3 facing = row(posed.normals_near, q), way = at - row(posed.x_near, q);
     if (facing.dot(normal) > facing_cosine) return;
@@ -248,12 +335,21 @@ int facing_vertex(const PosedCubes& posed, int p, const std::vector<Near>& near,
     if (square >= thin * thin && way.dot(facing) < 0) return;
     if (square >= come_closer * come_closer * (posed.rest_near.row(p) - posed.rest_near.row(q)).squaredNorm()) return;
     nearest = square;
+    posed.set_most(nearest, limits);
     found = w;
   };
   for (const auto& [block, groups] : near)
-    for (unsigned bits = posed.facing_of(own, all, {block, groups}, nearest); bits != 0; bits &= bits - 1) {
-      const int group = block * in_a_block + std::countr_zero(bits);
-      for (int q = posed.first_vertex[group]; q < posed.first_vertex[group + 1]; ++q) look_at(q);
+    for (unsigned left = all ? groups : groups & posed.moved[block]; left != 0;) {
+      const int two = std::countr_zero(left) / 2;
+      const unsigned which = left >> 2 * two & 3U;
+      left &= ~(3U << 2 * two);
+      const unsigned lanes = (which & 1U ? 0x0FU : 0U) | (which & 2U ? 0xF0U : 0U);
+      const int pair = block * in_a_block / 2 + two;
+      for (unsigned bits = lanes & posed.vertices_may_face(limits, posed.by_vertex[pair]); bits != 0;
+           bits &= bits - 1) {
+        const int lane = std::countr_zero(bits);
+        look_at(posed.first_vertex[2 * pair + lane / in_a_group] + lane % in_a_group);
+      }
     }
   return found;
 }

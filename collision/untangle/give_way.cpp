@@ -272,10 +272,10 @@ Meetings where_it_opens(const SoftTissue& tissue, const Points& skinned, const M
 }
 
 // If hardly any room is left between parts over some area, faces that touch would hold cloth that has no room. There
-// vertices that move together give way less, so that the parts pass through each other.
-void let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
+// vertices that move together give way less, so that the parts pass through each other. Returns whether any do.
+bool let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, const Points& x, Points& to) {
   const double pinched = tissue.options.pinched_part * tissue.options.room;
-  if (static_cast<int>(pinches.size()) < tissue.options.many_pinched) return;
+  if (static_cast<int>(pinches.size()) < tissue.options.many_pinched) return false;
   DisjointSets sets = moved_together(tissue, x, to, {&pinches});
   Eigen::VectorXi count = Eigen::VectorXi::Zero(tissue.body.vertex_count);  // pinches, by set
   Eigen::VectorXd share = Eigen::VectorXd::Ones(tissue.body.vertex_count);  // of its displacements
@@ -288,6 +288,7 @@ void let_through(const SoftTissue& tissue, const std::vector<Meeting>& pinches, 
   for (int v = 0; v < tissue.body.vertex_count; ++v)
     if (const int set = sets.root(v); count[set] >= tissue.options.many_pinched)
       to.row(v) = (x.row(v) + share[set] * (to.row(v) - x.row(v))).eval();
+  return count.maxCoeff() >= tissue.options.many_pinched;
 }
 
 }  // namespace
@@ -316,7 +317,7 @@ GiveWay::GiveWay(Surface body, const Points& rest, const GiveWayOptions& options
 // Presses parts apart where they meet. Places that still cross are untangled one by one: from the pressed shape, or
 // from the skinned one, or else left in the one with fewer crossings. Then presses for more room, where this makes no
 // further pinches.
-Points GiveWay::operator()(const Points& x) const {
+Points GiveWay::operator()(const Points& x, bool* apart) const {
   const SoftTissue& tissue = rest_->tissue();
   Meetings body = meetings(tissue, x, nullptr);
   Points to = pressed(tissue, x, x, body.close);
@@ -344,7 +345,8 @@ Points GiveWay::operator()(const Points& x) const {
     to = body.facing.x;
   }
   tissue.caches.give_back(std::move(cache));
-  let_through(tissue, pinches_of(tissue, body.close, x, to), x, to);
+  const bool through = let_through(tissue, pinches_of(tissue, body.close, x, to), x, to);
+  if (apart) *apart = left.empty() && !through;  // presses add no pairs to those that are left
   return to;
 }
 

@@ -43,8 +43,9 @@ class GiveWay {
   // rest: the body in a pose in which its parts are apart, such as the zero pose [m].
   GiveWay(Surface body, const Points& rest, const GiveWayOptions& = {});
 
-  // The moved surface for skinned positions x, n x 3 [m]. Depends on x alone.
-  Points operator()(const Points& x) const;
+  // The moved surface for skinned positions x, n x 3 [m]. Depends on x alone. `apart`, where given, becomes true if no
+  // triangles of the moved surface intersect; false says nothing.
+  Points operator()(const Points& x, bool* apart = nullptr) const;
 
  private:
   class Rest;

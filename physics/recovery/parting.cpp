@@ -69,7 +69,7 @@ Parting part_at_start(const ContactWorld& world, SelfCrossings& self_crossings, 
   // 1. Find what is tangled.
   const bool opens_itself = !clean && nodes.allFinite() && find_tangled(world, nodes, options, parting.left_alone);
   // 2. Let through cloth that is caught where a body crosses itself.
-  self_crossings.switch_off(nodes, wanted, targets, parting.left_alone);
+  self_crossings.switch_off(nodes, wanted, targets, parting.left_alone, where.apart);
   // 3. Put on again cloth that a limb has gone through, or that has sunken in.
   std::vector<char> pierced, sunken;
   if (!opens_itself) {

@@ -18,6 +18,8 @@ struct RecoveryTargets {
   Points last_clean;              // all nodes when the cloth was last clean; empty: never
   double thickness;               // of contact [m]
   double h;                       // of the step [s]
+  std::vector<char> apart = {};   // 1 for obstacles that are known not to cross themselves at the step's end; empty:
+                                  // nothing is known
 };
 
 enum class PutOn { nothing, too_far, no_place, done };

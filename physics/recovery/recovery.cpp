@@ -228,22 +228,24 @@ Recovery recover(const ContactWorld& world, const Eigen::VectorXd& inverse_mass,
 
 SelfCrossings::SelfCrossings(const ContactWorld& world) : world_(world), known_(world.obstacles.size()) {}
 
-bool SelfCrossings::crosses(int obstacle, const Points& nodes, Known& known) {
+bool SelfCrossings::crosses(int obstacle, const Points& nodes, bool apart, Known& known) {
   const Surface& surface = *world_.obstacles[obstacle];
   const Points x = nodes.middleRows(world_.first_node[obstacle], surface.vertex_count);
   if (x.rows() != known.x.rows() || x != known.x) {
     known.x = x;
-    known.crosses = !intersecting_pairs(surface, x, known.cache).empty();
+    known.crosses = !apart && !intersecting_pairs(surface, x, known.cache).empty();
   }
   return known.crosses;
 }
 
-void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& targets, Exemption& exemption) {
+void SelfCrossings::switch_off(const Points& from, const Points& to, const Points& targets, Exemption& exemption,
+                               const std::vector<char>& apart) {
   for (std::size_t k = 0; k < known_.size(); ++k) {
     const int obstacle = static_cast<int>(k);
     auto& [start, end] = known_[k];
     std::swap(start, end);  // a step begins where the last one ended
-    const bool before = crosses(obstacle, from, start), after = crosses(obstacle, to, end);
+    const bool before = crosses(obstacle, from, false, start),
+               after = crosses(obstacle, to, !apart.empty() && apart[k], end);
     if (before || after) selvedge::switch_off(world_, obstacle, from, to, targets, exemption);
   }
 }

@@ -34,11 +34,13 @@ Recovery recover(const ContactWorld&, const Eigen::VectorXd& inverse_mass, doubl
                  const RecoveryOptions& = {});
 
 // Finds obstacles that cross themselves at a step's start or end, and the cloth that is caught there (caught.hpp).
-// Caches the answers for the last positions.
+// `apart`, by obstacle: 1 for those that are known not to cross themselves at its end; empty: nothing is known. Caches
+// the answers for the last positions.
 class SelfCrossings {
  public:
   explicit SelfCrossings(const ContactWorld& world);  // keeps a reference
-  void switch_off(const Points& from, const Points& to, const Points& targets, Exemption&);
+  void switch_off(const Points& from, const Points& to, const Points& targets, Exemption&,
+                  const std::vector<char>& apart = {});
 
  private:
   struct Known {
@@ -46,7 +48,7 @@ class SelfCrossings {
     bool crosses = false;
     IntersectionCache cache;
   };
-  bool crosses(int obstacle, const Points& nodes, Known&);
+  bool crosses(int obstacle, const Points& nodes, bool apart, Known&);
 
   const ContactWorld& world_;
   std::vector<std::array<Known, 2>> known_;

@@ -33,6 +33,7 @@ struct BodyFrame {
   Points rotations;                 // one row per joint: axis times angle [rad], relative to the parent
   Vec3 translation = Vec3::Zero();  // of the pose [m]
   Points joints;                    // where they are [m]
+  bool apart = false;               // no triangles of its surface are known to intersect; false says nothing
   bool is_body() const { return joints.rows() > 0; }
 };
 

@@ -69,6 +69,13 @@ AddedTerm RecoveringStepper::added_term(const Parting& parting, const Drive& dri
   return added;
 }
 
+// By obstacle: 1 for bodies that are known not to cross themselves.
+std::vector<char> apart_bodies(const Drive& drive) {
+  std::vector<char> apart;
+  for (const BodyFrame& body : drive.bodies) apart.push_back(body.apart);
+  return apart;
+}
+
 Exemption both_of(Exemption a, const Exemption& b) {
   return {either(std::move(a.self), b.self), either(std::move(a.body), b.body),
           either(std::move(a.switched_off), b.switched_off)};
@@ -87,7 +94,7 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   const LastClean before = from.clean ? LastClean{} : last_clean(from);
   const RecoveryTargets where{&wanted, &drive.skinned_targets, gather_nodes(before.x, before.obstacles),
-                              scene_.contact.thickness, dt};
+                              scene_.contact.thickness, dt, apart_bodies(drive)};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   UntanglingBudget budget{options_.untangling_passes, &extras.stop};
   const Parting parting = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where,

@@ -24,7 +24,12 @@ std::vector<double> gaps(const std::vector<int>& foot, const PosedSkin& body, co
     const double out = way.norm(), most = out / first_part;
     if (!(out > 0 && out < far)) continue;
     const Vec3 along = way / out;
-    body.grid.for_each_place_near(from, most + beside, [&](int p) {
+    // What counts is in a cone on the disk round the foot: its distance from the line is less than what is left of
+    // `most` at its height, and `beside`.
+    const double base = most + beside;
+    const Vec3 tip = from + base * along,
+               disk = (base * (1 - along.array().square()).max(0).sqrt() + 1e-9 * base).matrix();
+    body.grid.for_each_place_in(tip.cwiseMin(from - disk), tip.cwiseMax(from + disk), [&](int p) {
       const Vec3 to = row(body.x_in_order, p) - from;
       const double height = to.dot(along);
       if (!(height > 0 && height < std::min(gap[v], most)) || row(body.normals_in_order, p).dot(along) > facing) return;

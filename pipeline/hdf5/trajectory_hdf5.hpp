@@ -40,6 +40,7 @@ class TrajectoryReader {
   int frame_count() const;          // full frames
   bool closed() const;              // false: still being written, or its writer was killed
   Frame frame(int index) const;
+  double time(int index) const;  // of a frame, without reading the rest of it [s]
 
  private:
   struct Impl;

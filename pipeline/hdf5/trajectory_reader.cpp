@@ -124,6 +124,7 @@ struct TrajectoryReader::Impl {
   bool closed = false;
 
   explicit Impl(const std::filesystem::path& path) : file(h5::File::open(path)) {}
+  TrajectoryRow read_row(int index) const;
   h5::Handle open_frames(const std::string& name, const std::vector<hsize_t>& row_shape) const {
     if (rows_of(file, name, row_shape, true) < static_cast<hsize_t>(frames))
       throw_damaged(file, name + " has fewer rows than there are frames");
@@ -196,16 +197,27 @@ std::vector<Look> TrajectoryReader::looks() const {
 int TrajectoryReader::frame_count() const { return impl_->frames; }
 bool TrajectoryReader::closed() const { return impl_->closed; }
 
+TrajectoryRow TrajectoryReader::Impl::read_row(int index) const {
+  if (index < 0 || index >= frames)
+    throw Error("there is no frame " + std::to_string(index), file.path().string(),
+                "it has " + std::to_string(frames) + " frames, counted from 0");
+  TrajectoryRow row = empty_row();
+  file.read_rows(report.id(), row_type.id(), {}, static_cast<hsize_t>(index), 1, row.cells.data());
+  if (const auto name = unknown_word(row))
+    throw_damaged(file, "frame " + std::to_string(index) + " has an unknown " + *name);
+  return row;
+}
+
+double TrajectoryReader::time(int index) const {
+  Frame frame;
+  fill_from_row(impl_->read_row(index), impl_->by_names, frame);
+  return frame.time;
+}
+
 Frame TrajectoryReader::frame(int index) const {
   const Impl& r = *impl_;
-  if (index < 0 || index >= r.frames)
-    throw Error("there is no frame " + std::to_string(index), r.file.path().string(),
-                "it has " + std::to_string(r.frames) + " frames, counted from 0");
+  const TrajectoryRow row = r.read_row(index);
   Frame frame;
-  TrajectoryRow row = empty_row();
-  r.file.read_rows(r.report.id(), r.row_type.id(), {}, static_cast<hsize_t>(index), 1, row.cells.data());
-  if (const auto name = unknown_word(row))
-    throw_damaged(r.file, "frame " + std::to_string(index) + " has an unknown " + *name);
   fill_from_row(row, r.by_names, frame);
   frame.x = r.read_points(r.x, index, r.info.rest.rows());
   for (std::size_t k = 0; k < r.obstacles.size(); ++k)

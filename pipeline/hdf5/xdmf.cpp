@@ -80,7 +80,7 @@ std::string xdmf_text(const TrajectoryInfo& info, const std::vector<double>& tim
 std::filesystem::path write_xdmf(const std::filesystem::path& trajectory) {
   const TrajectoryReader reader(trajectory);
   std::vector<double> times;
-  for (int i = 0; i < reader.frame_count(); ++i) times.push_back(reader.frame(i).time);
+  for (int i = 0; i < reader.frame_count(); ++i) times.push_back(reader.time(i));
   std::filesystem::path path = trajectory;
   path.replace_extension(".xdmf");
   write_file(path, xdmf_text(reader.info(), times, trajectory.filename().string()));

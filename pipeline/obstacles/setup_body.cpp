@@ -169,15 +169,17 @@ void leave_room(double room, Performance& who) {
   who.known->performance = room > 0 ? hash_of_performance(who.surface, who.body.skin, who.shape, who.clip, room) : 0;
 }
 
-Points with_soft_tissue(const GiveWay& tissue, const Points& skinned, PosedBodies& known) {
+void give_way(const GiveWay& tissue, PosedBodies& known, PosedBody& body) {
   if (known.store)
-    if (std::optional<Points> given = known_tissue(*known.store, skinned)) return *given;
+    if (std::optional<Points> given = known_tissue(*known.store, body.skinned)) {
+      body.given = std::move(*given);
+      return;
+    }
   Stopwatch watch;
-  Points given = tissue(skinned);
+  body.given = tissue(body.skinned, &body.apart);
   ++known.poses;
   known.seconds += watch.lap();
-  if (known.store) keep_tissue(skinned, given, *known.store);
-  return given;
+  if (known.store) keep_tissue(body.skinned, body.given, *known.store);
 }
 
 }  // namespace
@@ -302,7 +304,10 @@ const PosedBody& posed_at(const Performance& who, double time) {
   if (const auto found = at.find(time); found != at.end()) return found->second;
   if (!who.known->keeps_all && at.size() >= most) at.clear();
   PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
-  body.given = who.soft_tissue ? with_soft_tissue(*who.soft_tissue, body.skinned, *who.known) : body.skinned;
+  if (who.soft_tissue)
+    give_way(*who.soft_tissue, *who.known, body);
+  else
+    body.given = body.skinned;
   hold_together(who.joined, body.given);
   return at.emplace(time, std::move(body)).first->second;
 }
@@ -336,7 +341,7 @@ ObstaclePart obstacle_of(const std::shared_ptr<const Performance>& who) {
   part.body = [who, joints = joint_positions(who->body, who->shape)](double time) {
     const BodyPose pose = pose_at(*who, time);
     return BodyFrame{who->shape, pose.rotations, pose.translation,
-                     in_scene(*who, posed_joints(who->body, joints, pose), time)};
+                     in_scene(*who, posed_joints(who->body, joints, pose), time), posed_at(*who, time).apart};
   };
   return part;
 }

@@ -25,6 +25,7 @@ struct Draping {
 // The surface of a body before it is placed in the scene: skinned, and with its soft tissue given way [m].
 struct PosedBody {
   Points skinned, given;
+  bool apart = false;  // no triangles of `given` are known to intersect
 };
 
 // A cache of posed surfaces of one performance by time, since soft tissue takes long, and the obstacle and all garments

@@ -143,6 +143,26 @@ TEST_CASE("what has been mended leaves room as well", "[give_way]") {
   }
 }
 
+TEST_CASE("soft tissue says that nothing crosses only where nothing does", "[give_way]") {
+  const Arm rod = arm();
+  const Surface both = twice(rod.surface);
+  const GiveWay give(both, beside(rod.straight, 0.5), {.room = 0.01, .most = 0.003});
+  int said = 0, crossed = 0;
+  for (double gap = 0.004; gap > -0.014; gap -= 0.001) {
+    CAPTURE(gap);
+    bool apart = false;
+    const Points x = beside(rod.straight, 2 * radius + gap);
+    const Points y = give(x, &apart);
+    CHECK(give(x) == y);
+    const bool crosses = crossings(both, y) > 0;
+    CHECK_FALSE((apart && crosses));
+    said += apart;
+    crossed += crosses;
+  }
+  CHECK(said > 3);
+  CHECK(crossed > 3);
+}
+
 TEST_CASE("two parts that come together go half the way each, as far as they may", "[give_way]") {
   const Arm rod = arm();
   const Surface both = twice(rod.surface);

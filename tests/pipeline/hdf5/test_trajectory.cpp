@@ -65,7 +65,11 @@ TEST_CASE("a trajectory read back is what was written") {
   REQUIRE(reader.info().obstacles.size() == 2);
   REQUIRE(reader.info().obstacles[1].name == "mover");
   REQUIRE(reader.info().obstacles[1].moving);
-  for (int i : {0, 1, 2, 50, 99}) require_same(reader.frame(i), fake::frame(scene, i));
+  for (int i : {0, 1, 2, 50, 99}) {
+    require_same(reader.frame(i), fake::frame(scene, i));
+    REQUIRE(reader.time(i) == reader.frame(i).time);
+  }
+  REQUIRE_THROWS_AS(reader.time(100), Error);
 }
 
 TEST_CASE("a file that is being written can be read up to its last full frame") {

@@ -207,6 +207,26 @@ TEST_CASE("The drive says shape, pose and joints of every body, whatever it come
   CHECK(without.drive_at(0.5).bodies.empty());
 }
 
+TEST_CASE("The drive says of a body that it does not cross itself only where that is so", "[setup_body]") {
+  const Folder folder("body_apart");
+  int said = 0, crossed = 0;
+  for (const std::string clip : {"walk", "hands_through_torso"}) {
+    const Setup setup = with_body(folder, "{room: 0.01, clip: " + clip + "}",
+                                  "    translate: [0.5, 0, 1]\n    motion: {keyframes: [{time: 0}, {time: 1, rotate: "
+                                  "[0, 90, 0]}]}\n");
+    for (double time = 0; time < 1.5; time += 0.25) {
+      INFO(clip << " at " << time);
+      const Drive drive = setup.drive_at(time);
+      const bool crosses = audit(setup.scene.obstacles[0].surface, drive.obstacles[0], {}).intersecting_pairs() > 0;
+      CHECK_FALSE((drive.bodies[0].apart && crosses));
+      said += drive.bodies[0].apart;
+      crossed += crosses;
+    }
+  }
+  CHECK(said >= 6);
+  CHECK(crossed > 0);
+}
+
 TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_body]") {
   const Folder folder("body_faulty");
   CHECK_THROWS_WITH(with_body(folder, "{clip: wlak}"),
