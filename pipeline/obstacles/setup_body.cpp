@@ -156,6 +156,7 @@ Clip performed(const Config& section, const Performance& who, const std::filesys
 
 void forget(PosedBodies& known) {
   known.at.clear();
+  known.joints.resize(0, 3);
   known.skin.reset();
 }
 
@@ -298,12 +299,19 @@ BodyPose pose_at(const Performance& who, double time) {
   return matched(pose_at(who.clip, time), who.clip.joints, who.body.joints);
 }
 
+JointTransforms transforms_to(const Performance& who, const BodyPose& pose) {
+  Points& joints = who.known->joints;
+  if (joints.rows() == 0) joints = joint_positions(who.body, who.shape);
+  return joint_transforms(who.body, joints, pose);
+}
+
 const PosedBody& posed_at(const Performance& who, double time) {
   constexpr std::size_t most = 4;  // times that a step needs
   std::map<double, PosedBody>& at = who.known->at;
   if (const auto found = at.find(time); found != at.end()) return found->second;
   if (!who.known->keeps_all && at.size() >= most) at.clear();
-  PosedBody body{posed(who.body, who.shape, pose_at(who, time)), {}};
+  const BodyPose pose = pose_at(who, time);
+  PosedBody body{posed(who.body.skin, who.shape, pose, transforms_to(who, pose)), {}};
   if (who.soft_tissue)
     give_way(*who.soft_tissue, *who.known, body);
   else

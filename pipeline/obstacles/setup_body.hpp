@@ -32,6 +32,7 @@ struct PosedBody {
 // need the same times.
 struct PosedBodies {
   std::map<double, PosedBody> at;
+  Points joints = {};      // in its shape and zero pose [m]; empty: nobody asked yet
   bool keeps_all = false;  // false: keeps only the last poses
   double skin_at = 0;      // time of `skin` [s]
   std::optional<PosedSkin> skin;
@@ -99,6 +100,9 @@ void read_tissue(const std::filesystem::path& folder, const std::vector<std::sha
 void write_tissue(const std::vector<std::shared_ptr<PosedBodies>>& bodies);
 
 BodyPose pose_at(const Performance&, double time);
+
+// Transforms of its joints from the zero pose to a pose. The joints of its shape are cached.
+JointTransforms transforms_to(const Performance&, const BodyPose&);
 
 // The body at a time [s], before it is placed. Cached in the performance.
 const PosedBody& posed_at(const Performance&, double time);

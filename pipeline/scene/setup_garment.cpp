@@ -237,17 +237,19 @@ Mesh rest_mesh(const Wearing& wearing) {
   return mesh;
 }
 
-Points skinned_at(const Wearing& wearing, double time) {
-  const Performance& who = *wearing.by;
-  return in_scene(who, skinned(wearing.garment, who.body, who.shape, pose_at(who, time)), time);
-}
-
 namespace {
 
-// The garment skinned and moved with the soft tissue, before it is placed.
+// The garment skinned as its body is, before it is placed.
+Points skinned(const Wearing& wearing, double time) {
+  const Performance& who = *wearing.by;
+  const BodyPose pose = pose_at(who, time);
+  return posed(wearing.garment.skin, who.shape, pose, transforms_to(who, pose));
+}
+
+// The same, moved with the soft tissue.
 Points with_soft_tissue(const Wearing& wearing, double time) {
   const Performance& who = *wearing.by;
-  Points x = skinned(wearing.garment, who.body, who.shape, pose_at(who, time));
+  Points x = skinned(wearing, time);
   if (!who.soft_tissue) return x;
   const PosedBody& body = posed_at(who, time);
   return x + wearing.skin * (body.given - body.skinned);
@@ -259,6 +261,8 @@ Points squeezed_at(const Wearing& wearing, const Footing& footing, double time, 
 }
 
 }  // namespace
+
+Points skinned_at(const Wearing& wearing, double time) { return in_scene(*wearing.by, skinned(wearing, time), time); }
 
 Points held_at(const Wearing& wearing, const std::vector<int>& vertices, double time) {
   const Points x = with_soft_tissue(wearing, time)(vertices, Eigen::all);
