@@ -54,7 +54,8 @@ def on_page_markdown(markdown, page, config, files):
             return f"{bang}[{text}]({link}{hash}{anchor})"
         if not (ROOT / here).exists():
             log.warning(f"{source}: leads nowhere: {target}")
-        return f"{text} (`{here}`)"
+        bracketed = markdown[: match.start()].endswith("(") and markdown.startswith(")", match.end())
+        return f"{text}: `{here}`" if bracketed else f"{text} (`{here}`)"
 
     return CODE_OR_LINK.sub(replaced, markdown)
 

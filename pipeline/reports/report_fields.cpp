@@ -153,7 +153,7 @@ BoundFields<StepReport> own_fields() {
       field("residual", &R::residual, "N", "largest unbalanced force at the end of the last substep",
             {{"max_residual", Over::largest}}),
       field("unsolved", &R::unsolved, "m", "bound of the RMS distance from where exact solves would end",
-            {{"max_unsolved", Over::largest}}),
+            {{"max_unsolved", Over::largest}}, Page::yes),
       field("untangling", &R::untangling, "", "passes of untangling before the step",
             {{"untangling_passes", Over::sum}}),
       field("out_of_newton", &R::out_of_newton, "",

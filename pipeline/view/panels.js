@@ -22,7 +22,10 @@ function makePanel(run, scaleText) {
   };
 }
 
-// What is worth saying about a frame, most important first: [text, class].
+const NOT_CONVERGED = "Solves ended so far at most (RMS over the vertices) from where exact ones would end. "
+  + "Contact holds as in every other frame.";
+
+// What is worth saying about a frame, most important first: [text, class, and where it needs one an explanation].
 function chipsOf(run, frame, marked) {
   const at = (name) => run.series[name][frame];
   const words = (name) => (name === "none" ? "" : name.replace(/_/g, " "));
@@ -46,7 +49,10 @@ function chipsOf(run, frame, marked) {
   const refused = words(at("verdict")), reason = words(at("reason"));
   if (at("fell_back")) chips.push([`fell back${refused ? `: ${refused}` : ""}`, "warn"]);
   if (reason) chips.push([`rejected: ${reason}`, "bad"]);
-  run.doubts.filter(at).forEach((name) => chips.push([words(name), "warn"]));
+  run.doubts.filter(at).forEach((name) => {
+    if (name !== "not_converged" || !at("unsolved")) chips.push([words(name), "warn"]);
+    else chips.push([`not converged: ${(1000 * at("unsolved")).toFixed(1)} mm`, "warn", NOT_CONVERGED]);
+  });
   if (at("by") && at("by") !== run.stepper) chips.push([`by ${at("by")}`, ""]);
   chips.push([`stretch ${range[0]} to ${range[1]}`, ""]);
   if (at("contacts")) chips.push([plural(at("contacts"), "contact"), ""]);
@@ -55,10 +61,11 @@ function chipsOf(run, frame, marked) {
 }
 
 function showChips(parent, chips) {
-  parent.replaceChildren(...chips.map(([text, kind]) => {
+  parent.replaceChildren(...chips.map(([text, kind, why = ""]) => {
     const chip = document.createElement("span");
     chip.className = `chip ${kind}`;
     chip.textContent = text;
+    chip.title = why;
     return chip;
   }));
 }

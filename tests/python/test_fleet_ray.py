@@ -44,8 +44,15 @@ def held_from(count, first):
     return [{"name": f"c{k:02}", "cost": count - k, "held": k >= first} for k in range(count)]
 
 
+def folders_of_nodes():
+    return set(pathlib.Path(tempfile.gettempdir()).glob("selvedge-fleet-*"))
+
+
+LEFT_BEFORE = folders_of_nodes()  # by a run that was killed
+
+
 def left_on_nodes():
-    return list(pathlib.Path(tempfile.gettempdir()).glob("selvedge-fleet-*"))
+    return folders_of_nodes() - LEFT_BEFORE
 
 
 def parent_of(process):

@@ -98,6 +98,8 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
     Frame f = frame(index);
     if (index == 24) f.bad_triangles = {10, 11, 200, 201, 230, 231};
     f.obstacle_pairs = static_cast<int>(f.bad_triangles.size());
+    f.report.doubts.not_converged = index == 24;
+    f.report.unsolved = 0.00234;
     if (index == 25) f.x.row(7).setConstant(std::numeric_limits<float>::quiet_NaN());
     return f;
   };
@@ -130,6 +132,8 @@ TEST_CASE("view: the page draws in a browser, and the slider changes the drawing
   CHECK(late.dom.find("data-theme=\"dark\"") != std::string::npos);
   CHECK(late.dom.find("data-frame=\"24\"") != std::string::npos);
   CHECK(late.dom.find(">self: not audited<") != std::string::npos);
+  CHECK(late.dom.find("title=\"Solves ended so far at most") != std::string::npos);
+  CHECK(late.dom.find(">not converged: 2.3 mm<") != std::string::npos);
   CHECK(late.dom.find(">6 intersecting pairs, 6 triangles marked<") != std::string::npos);
   // A page without a drawing is a PNG of about 20 kB.
   CHECK(early.png.size() > 40'000);
