@@ -6,7 +6,12 @@
 namespace selvedge {
 
 void turn_outward(const std::string& name, BodyModel& body, std::vector<std::string>& warnings) {
-  turn_outward(name, body.meshes, {&body.skin.rest, 1}, same_places(body.skin.rest), body.skin.triangles, warnings);
+  const bool solid =
+      turn_outward(name, body.meshes, {&body.skin.rest, 1}, same_places(body.skin.rest), body.skin.triangles, warnings);
+  if (!solid)
+    warnings.push_back(name +
+                       ": no part of the body is closed, so that nothing is inside of it and cloth that gets there is "
+                       "not pushed out; join its seams (`merge by distance`) and close its holes where it was made");
 }
 
 OwnCrossings own_crossings(const BodyModel& body, const Eigen::VectorXd& shape) {

@@ -1,5 +1,6 @@
 #include "pipeline/config/config_units.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -83,14 +84,18 @@ double largest_sensible(Unit unit) {
   return HUGE_VAL;
 }
 
-// "N m", "kg/m^2" and "kg/m²" are written as in the table.
+// "N m", "kg/m^2", "kg/m²", "µN m" (with either letter) and "90°" are written as in the table.
 std::string plain_symbol(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> spellings = {
+      {{"\xC2\xB2", "2"}, {"\xC2\xB3", "3"}, {"\xC2\xB5", "u"}, {"\xCE\xBC", "u"}, {"\xC2\xB0", "deg"}}};
   std::string plain;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text.substr(i).starts_with("\xC2\xB2") || text.substr(i).starts_with("\xC2\xB3"))
-      plain += text[++i] == '\xB2' ? '2' : '3';
-    else if (text[i] != ' ' && text[i] != '^' && text[i] != '*')
-      plain += text[i];
+  while (!text.empty()) {
+    const auto spelling = std::ranges::find_if(spellings, [&](const auto& one) { return text.starts_with(one.first); });
+    if (spelling != spellings.end())
+      plain += spelling->second;
+    else if (text[0] != ' ' && text[0] != '^' && text[0] != '*')
+      plain += text[0];
+    text.remove_prefix(spelling != spellings.end() ? spelling->first.size() : 1);
   }
   return plain;
 }

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/formats/gltf_drawn_tinygltf.hpp"
 #include "pipeline/formats/gltf_numbers_tinygltf.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
@@ -167,6 +168,8 @@ class Document {
   Numbers numbers(int accessor, int columns, const std::string& part) const {
     return gltf_numbers(model, accessor, columns, file_.string() + ": " + part);
   }
+
+  std::string name() const { return file_.filename().string(); }
 
   tinygltf::Model model;
 
@@ -335,19 +338,29 @@ const std::vector<double>& morph_weights(const tinygltf::Node& node, const tinyg
   return node.weights.empty() ? mesh.weights : node.weights;
 }
 
-// Adds the chosen meshes that skins deform, each as a group with its name, and the joints of these skins. `parts` gets
-// the number of each vertex's primitive. Returns the names of all meshes that skins deform.
+// Adds the chosen meshes that skins deform, each as a group with its name, and the joints of these skins. Hidden ones
+// are taken only by name. `parts` gets the number of each vertex's primitive. Returns the names of all meshes that
+// skins deform.
 std::vector<std::string> add_meshes(const Document& file, const std::vector<int>& place, const NameChoice& choice,
                                     GltfScene& scene, std::vector<Eigen::Triplet<double>>& weights,
                                     std::vector<int>& parts) {
   std::vector<std::string> names;
   std::map<int, std::vector<int>> joints;  // of each skin
-  for (const tinygltf::Node& node : file.model.nodes) {
-    if (node.mesh < 0 || node.skin < 0) continue;
+  const GltfDrawn nodes = drawn_nodes(file.model);
+  for (std::size_t i = 0; i < file.model.nodes.size(); ++i) {
+    const tinygltf::Node& node = file.model.nodes[i];
+    if (node.mesh < 0 || (node.skin < 0 && !nodes.rigid[i])) continue;
     const tinygltf::Mesh& mesh = file.entry(file.model.meshes, node.mesh, "node `" + node.name + "`");
-    names.push_back(name_or(mesh.name.empty() ? node.name : mesh.name, "mesh", static_cast<std::size_t>(node.mesh)));
-    const std::string& name = names.back();
+    const auto name = name_or(mesh.name.empty() ? node.name : mesh.name, "mesh", static_cast<std::size_t>(node.mesh));
+    if (node.skin >= 0) names.push_back(name);
     if (!choice.takes(name)) continue;
+    if (node.skin < 0 || (!nodes.drawn[i] && choice.only.empty())) {
+      scene.mesh.warnings.push_back(
+          fmt::format("{}: mesh `{}` is left out: {}", file.name(), name,
+                      node.skin < 0 ? "it hangs on a joint and has no skin; give it one if cloth is to meet it"
+                                    : "the file does not show it; `selvedge body --mesh` takes it all the same"));
+      continue;
+    }
     if (!joints.contains(node.skin)) joints[node.skin] = add_skin(file, node.skin, place, scene);
     const auto first = static_cast<int>(scene.mesh.x.rows());
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
@@ -426,7 +439,7 @@ GltfScene read_gltf(const std::filesystem::path& path, const NameChoice& choice)
     file.fail("skins", "is not used by any mesh", "export the body together with its armature and weights");
   choice.check(names, path.string());
   if (scene.mesh.triangles.rows() == 0) file.fail("meshes", "have no triangles", "export the body's surface");
-  scene.weights = join_alike(weights, std::ssize(scene.joints), parts, scene.mesh, path.filename().string());
+  scene.weights = join_alike(weights, std::ssize(scene.joints), parts, scene.mesh, file.name());
   for (std::size_t a = 0; a < file.model.animations.size(); ++a)
     scene.animations.push_back(animation_of(file, place, a));
   return scene;

@@ -10,6 +10,7 @@
 #include "pipeline/formats/mesh_obj.hpp"
 #include "pipeline/formats/mesh_ply.hpp"
 #include "pipeline/formats/polygon.hpp"
+#include "pipeline/host/file_formats.hpp"
 #include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -75,7 +76,9 @@ bool same_faces(const Mesh& a, const Mesh& b) {
 Mesh read_mesh(const fs::path& path) {
   const std::string extension = lower_extension(path), name = path.string();
   if (extension != ".obj" && extension != ".ply")
-    throw Error("has an extension that no mesh reader knows", name, "known: .obj, .ply");
+    throw Error("has an extension that no mesh reader knows", name,
+                is_gltf(path) ? "known: .obj, .ply; a rigged body of glTF is read as `body: {model: ..}`"
+                              : export_cure(path, ".obj or .ply", "known: .obj, .ply"));
   const std::string text = extension == ".obj" ? read_text_file(path, "mesh") : read_headed_file(path, "mesh");
   if (text.empty()) throw Error("is empty", name, "name a mesh file with vertices and faces");
   Mesh mesh = extension == ".obj" ? parse_obj(text, name) : parse_ply(text, name);

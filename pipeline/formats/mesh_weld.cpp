@@ -13,6 +13,7 @@
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/seam_places.hpp"
 
 namespace selvedge {
 namespace {
@@ -65,11 +66,12 @@ Surface surface_of(const Points& x, const Triangles& triangles) {
   return make_surface(static_cast<int>(x.rows()), triangles);
 }
 
-// Of each vertex the lowest one at its place whose weights are nearly the same. Parts of a body that touch have other
+using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// Parts places so that the weights of all vertices at one are nearly the same. Parts of a body that touch have other
 // weights there and move apart; seams of textures have the same, but for rounding.
-std::vector<int> alike_places(const Points& x, const Eigen::SparseMatrix<double, Eigen::RowMajor>& weights) {
+std::vector<int> alike_places(std::vector<int> places, const Weights& weights) {
   constexpr double most = 0.1;  // sum of the differences of two rows, each of which sums to 1
-  std::vector<int> places = same_places(x);
   part_places(
       [&](int v, int w) {
         if (v == w) return true;
@@ -86,15 +88,6 @@ Triangles whole(const Triangles& triangles) {
   for (int t = 0; t < triangles.rows(); ++t)
     if (const auto row = triangles.row(t); row[0] != row[1] && row[1] != row[2] && row[2] != row[0]) kept.push_back(t);
   return triangles(kept, Eigen::all);
-}
-
-// Of each vertex whether an edge there has a single triangle.
-std::vector<char> on_border(const Surface& surface) {
-  std::vector<char> border(static_cast<std::size_t>(surface.vertex_count), 0);
-  const std::vector<int> count = face_counts(surface);
-  for (Eigen::Index e = 0; e < surface.edges.rows(); ++e)
-    if (count[static_cast<std::size_t>(e)] == 1) border[surface.edges(e, 0)] = border[surface.edges(e, 1)] = 1;
-  return border;
 }
 
 // Of each connected piece whether all of its triangles are at the places of others, in lower pieces: it is a copy.
@@ -117,18 +110,28 @@ std::vector<char> copied_pieces(const Surface& surface, const std::vector<int>& 
   return copied;
 }
 
-// Joins borders along edges where exactly two triangles meet, first within parts, then everywhere. What is open after
-// that, in no triangle or a copy is joined by its place. Returns of each vertex the lowest that it is joined with.
-std::vector<int> joined_where_open(const Surface& as_read, const std::vector<int>& places,
+// Joins borders along edges where exactly two triangles meet: first within parts, then everywhere, then where vertices
+// are near each other, and at last also where they do not move alike: a head and a trunk that end in one ring are one
+// surface. What is open after that, in no triangle or a copy is joined by its place. Returns of each vertex the lowest
+// that it is joined with.
+std::vector<int> joined_where_open(const Points& x, const Surface& as_read, const Weights& weights,
                                    const std::vector<int>& parts) {
+  const std::vector<int> same = same_places(x), nearly = near_places(x, as_read, same),
+                         places = alike_places(same, weights);
+  const std::vector<int> one_part(parts.size(), 0);
+  struct Pass {
+    std::vector<int> places;
+    const std::vector<int>& parts;
+  };
   DisjointSets sets(as_read.vertex_count);
   Surface surface = as_read;
-  for (const bool within_parts : {true, false}) {
+  for (const Pass& pass :
+       {Pass{places, parts}, {places, one_part}, {alike_places(nearly, weights), one_part}, {nearly, one_part}}) {
     const std::vector<char> border = on_border(surface);
     std::map<std::pair<int, int>, int> first;
-    std::vector<int> open = places;
+    std::vector<int> open(border.size());
     for (int v = 0; v < surface.vertex_count; ++v)
-      open[v] = border[v] ? first.try_emplace({places[v], within_parts ? parts[v] : 0}, v).first->second : v;
+      open[v] = border[v] ? first.try_emplace({pass.places[v], pass.parts[v]}, v).first->second : v;
     std::optional<WeldedSurface> welded = welded_surface(surface, open);
     if (!welded) continue;
     for (int v = 0; v < surface.vertex_count; ++v) sets.join(v, welded->joined[v]);
@@ -222,14 +225,13 @@ void weld_as(const Mesh& welded, Mesh& mesh) {
 Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
                                                         Eigen::Index joints, const std::vector<int>& parts, Mesh& mesh,
                                                         const std::string& name) {
-  using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   Weights as_read(mesh.x.rows(), joints);
   as_read.setFromTriplets(weights.begin(), weights.end());
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_read.rows());
   for (const Eigen::Triplet<double>& w : weights) sum[w.row()] += w.value();
   for (Eigen::Index v = 0; v < as_read.rows(); ++v) as_read.row(v) /= sum[v];
   const Surface surface = surface_of(mesh.x, whole(mesh.triangles));
-  const std::vector<int> stands_for = joined_where_open(surface, alike_places(mesh.x, as_read), parts);
+  const std::vector<int> stands_for = joined_where_open(mesh.x, surface, as_read, parts);
   join_at(stands_for, mesh, name);
   std::vector<Eigen::Triplet<double>> kept;
   for (int v = 0; v < as_read.rows(); ++v)

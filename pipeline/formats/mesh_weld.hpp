@@ -50,9 +50,10 @@ void weld_as(const Mesh& welded, Mesh&);
 
 // Joins vertices of a skinned mesh that lie at one place and move alike, where the mesh is open: pieces that are closed
 // may touch. `parts`: of each vertex the part of the file that it is in. A part is closed by itself before it is joined
-// with others. `weights` are those of the vertices as read and of `joints`, above 0, at least one a vertex; their sums
-// need not be 1. Returns the weights of the joined vertices, each of the lowest that it was made of, in rows that sum
-// to 1.
+// with others. What is open after that is joined where two edges lie within a fiftieth of the mean edge of each other,
+// and at last where they do not move alike. `weights` are those of the vertices as read and of `joints`, above 0, at
+// least one a vertex; their sums need not be 1. Returns the weights of the joined vertices, each of the lowest that it
+// was made of, in rows that sum to 1.
 Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
                                                         Eigen::Index joints, const std::vector<int>& parts, Mesh&,
                                                         const std::string& name);

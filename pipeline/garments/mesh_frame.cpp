@@ -77,6 +77,14 @@ Points in_metres(const Points& x, const MeshFrame& frame) {
 
 std::string frame_text(const MeshFrame& frame) { return frame.unit + (frame.up == Up::y ? ", y up" : ", z up"); }
 
+Points of_triangles(const Points& x, const Triangles& triangles) {
+  std::vector<int> used(triangles.reshaped().begin(), triangles.reshaped().end());
+  std::ranges::sort(used);
+  const auto repeated = std::ranges::unique(used);
+  used.erase(repeated.begin(), repeated.end());
+  return x(used, Eigen::all);
+}
+
 std::vector<FrameFit> fitting_frames(const Points& x, const Triangles& triangles, const Points& body,
                                      const Triangles& body_triangles, const std::optional<std::string>& unit,
                                      const std::optional<Up>& up) {
@@ -85,11 +93,12 @@ std::vector<FrameFit> fitting_frames(const Points& x, const Triangles& triangles
   const std::vector<std::string> units =
       unit ? std::vector{*unit} : std::vector<std::string>{"m", "dm", "cm", "mm", "in"};
   const std::vector<Up> axes = up ? std::vector{*up} : std::vector{Up::y, Up::z};
+  const Points used = of_triangles(x, triangles);
   std::vector<FrameFit> fits;
   for (const std::string& one : units)
     for (const Up axis : axes) {
       const MeshFrame frame{one, axis};
-      const Points there = in_metres(x, frame);
+      const Points there = in_metres(used, frame);
       if (fits_box(there, body) && !worn_part(there, body).places.empty())
         fits.push_back({frame, off_body(there, body, normals)});
     }

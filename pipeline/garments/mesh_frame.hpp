@@ -15,8 +15,9 @@ struct MeshFrame {
   Up up = Up::y;
 };
 
-Points in_metres(const Points& x, const MeshFrame&);  // with y up
-std::string frame_text(const MeshFrame&);             // "cm, z up"
+Points in_metres(const Points& x, const MeshFrame&);     // with y up
+Points of_triangles(const Points& x, const Triangles&);  // those that are a corner, each once
+std::string frame_text(const MeshFrame&);                // "cm, z up"
 
 // A way in which a garment's coordinates may be meant, by where it puts the garment on its body: on it by
 // worn_part.hpp, not beyond the body's box enlarged by a quarter of its diagonal, and no smaller than a tenth of that.

@@ -20,6 +20,7 @@
 #include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/host/bytes_of.hpp"
+#include "pipeline/host/file_formats.hpp"
 #include "pipeline/host/kept_rows.hpp"
 #include "pipeline/host/lower_extension.hpp"
 #include "pipeline/motions/clip_amass.hpp"
@@ -35,18 +36,18 @@ namespace {
 
 constexpr double gltf_frames = 60;  // frames per second in scenes: glTF files have none
 
-bool is_gltf(const std::filesystem::path& name) {
-  const std::string extension = lower_extension(name);
-  return extension == ".glb" || extension == ".gltf";
-}
-
-BodyModel read_model(const Config& model, const std::filesystem::path& folder) {
+BodyModel read_model(const Config& model, const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   if (model.text() == "mannequin") return kept_mannequin(cache_folder());
   const std::filesystem::path file = existing_path(model, folder);
   if (lower_extension(file) == ".npz") return read_smpl(file);
   if (lower_extension(file) == ".h5") return read_body(file);
-  if (is_gltf(file)) return read_gltf_rig(file).body;
-  model.fail("is neither `mannequin` nor a .npz, .h5, .glb or .gltf file", "convert the body as docs/bodies.md says");
+  if (is_gltf(file)) {
+    GltfRig rig = read_gltf_rig(file);
+    warnings = rig.scene.mesh.warnings;
+    return std::move(rig.body);
+  }
+  model.fail("is neither `mannequin` nor a .npz, .h5, .glb or .gltf file",
+             export_cure(file, ".glb", "convert the body as docs/bodies.md says"));
 }
 
 // The body in SMPL's zero pose, for which clips are made.
@@ -92,7 +93,9 @@ Clip read_clip(const Config& section, const Measures& who, const std::filesystem
   const std::vector<std::string> known = procedural_clip_names();
   if (std::find(known.begin(), known.end(), clip.text()) == known.end())
     clip.fail("is the unknown clip `" + clip.text() + "`",
-              "name a .bvh, .npz, .glb or .gltf file, or one of " + joined(known) + suggestion(clip.text(), known));
+              export_cure(name, ".glb or .bvh",
+                          "name a .bvh, .npz, .glb or .gltf file, or one of " + joined(known) +
+                              suggestion(clip.text(), known)));
   return make_clip(clip.text(), who.joints, who.floor);
 }
 
@@ -197,7 +200,10 @@ Performance figure_of(BodyModel body, const std::string& what) {
 }
 
 Performance read_figure(const Config& section, const std::filesystem::path& folder) {
-  return figure_of(read_model(section["model"], folder), section["model"].text());
+  std::vector<std::string> warnings;
+  Performance who = figure_of(read_model(section["model"], folder, warnings), section["model"].text());
+  who.warnings.insert(who.warnings.begin(), warnings.begin(), warnings.end());
+  return who;
 }
 
 void perform_clip(Clip made, const Config& section, const Config& what, Performance& who) {

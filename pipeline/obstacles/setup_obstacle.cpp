@@ -7,6 +7,7 @@
 
 #include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
@@ -74,7 +75,7 @@ Sequence read_body(const Config& section, const std::filesystem::path& folder, s
   if (const Config& run = section["trajectory"]; run.given) {
     Sequence recorded = read_recorded(run, folder, warnings);
     for (const Points& frame : recorded.frames) refuse_far(run, "the recorded obstacle", frame);
-    const std::vector<int> places = same_places(recorded.frames);
+    const std::vector<int> places = seam_places(recorded.frames, recorded.triangles);
     turn_outward(run["file"].text(), {}, recorded.frames, places, recorded.triangles, warnings);
     warn_of_crossings(run["file"].text(), own_crossings({}, recorded.frames[0], recorded.triangles, places), warnings);
     return recorded;
@@ -112,7 +113,8 @@ ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::
   ObstaclePart part;
   part.obstacle.name = obstacle_name(section, index);
   part.obstacle.surface = make_surface(static_cast<int>(body->frames[0].rows()), body->triangles);
-  if (std::optional<WeldedSurface> welded = welded_surface(part.obstacle.surface, same_places(body->frames))) {
+  if (std::optional<WeldedSurface> welded =
+          welded_surface(part.obstacle.surface, seam_places(body->frames, body->triangles))) {
     for (Points& frame : body->frames) hold_together(welded->joined, frame);
     part.obstacle.surface = std::move(welded->surface);
   }

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/same_places.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/read_point_cache.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/obstacles/numbered_files.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
@@ -71,7 +71,7 @@ Sequence cached_sequence(const Config& section, const std::filesystem::path& fol
   warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
   const double unit = read_unit(section["unit"]);
   for (Points& x : cache.frames) x *= unit;
-  const std::vector<int> places = same_places(cache.frames);
+  const std::vector<int> places = seam_places(cache.frames, mesh.triangles);
   turn_outward(section["mesh"].text(), mesh.groups, cache.frames, places, mesh.triangles, warnings);
   warn_of_crossings(section["mesh"].text(), own_crossings(mesh.groups, cache.frames[0], mesh.triangles, places),
                     warnings);
@@ -153,7 +153,7 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
     sequence.frames.push_back(unit * mesh.x);
   }
   const std::string name = sequence_name(section);
-  const std::vector<int> places = same_places(sequence.frames);
+  const std::vector<int> places = seam_places(sequence.frames, sequence.triangles);
   turn_outward(name, first.groups, sequence.frames, places, sequence.triangles, warnings);
   warn_of_crossings(name, own_crossings(first.groups, sequence.frames[0], sequence.triangles, places), warnings);
   return sequence;

@@ -22,6 +22,16 @@ namespace {
 namespace nb = nanobind;
 using namespace nb::literals;
 
+// Puts an array where a view is: `scene.x = array`, and `scene.x += array`, which changes the view first.
+void put(const nb::handle& array, const std::string& name, Points& present) {
+  const Points given = points_of(array, name, NotFinite::allowed);
+  if (given.rows() != present.rows())
+    throw Error(
+        "has " + std::to_string(given.rows()) + " rows, the scene has " + std::to_string(present.rows()) + " vertices",
+        name, "give every vertex");
+  present = given;
+}
+
 nb::list cloths_of(const SceneObject& scene) {
   nb::list cloths;
   for (const Cloth& cloth : scene.scene().cloths)
@@ -154,12 +164,19 @@ void bind_scene(nb::module_& module) {
       .def("_record", &SceneObject::record, "folder"_a, "Records the present state and every frame after it.")
       .def("_end_recording", &SceneObject::end_recording, "Closes the file of a recording.")
       .def("__repr__", &SceneObject::described)
-      .def_prop_ro(
+      .def("__reduce__",
+           [](const SceneObject&) -> nb::object {
+             throw Error("cannot be copied or sent to another process", "scene",
+                         "make one there of the same arrays or file; `save` and `restore` carry its state");
+           })
+      .def_prop_rw(
           "x", [](nb::handle self) { return view_of(nb::cast<SceneObject&>(self).state().x, self); },
+          [](SceneObject& scene, const nb::handle& array) { put(array, "x", scene.state().x); },
           "Positions of all cloths on end, n x 3 [m]: a view without a copy, which shows the present state after every "
           "step. What is written to it changes the state.")
-      .def_prop_ro(
+      .def_prop_rw(
           "v", [](nb::handle self) { return view_of(nb::cast<SceneObject&>(self).state().v, self); },
+          [](SceneObject& scene, const nb::handle& array) { put(array, "v", scene.state().v); },
           "Velocities, n x 3 [m/s]: a view without a copy.")
       .def_prop_ro(
           "triangles", [](const SceneObject& scene) { return copy_of(scene.scene().surface.triangles); },

@@ -1,6 +1,12 @@
+#include <pthread.h>
+
 #include <algorithm>
 #include <exception>
 #include <string>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/host/process_threads.hpp"
@@ -45,12 +51,21 @@ void raise_error(const std::exception_ptr& thrown, void* type) {
   }
 }
 
+// Python's multiprocessing forks. The threads of OpenMP are not in the new process, which would wait for them for ever:
+// they end before, and both processes start new ones when they need them.
+void end_threads_at_forks() {
+#ifdef _OPENMP
+  pthread_atfork([] { omp_pause_resource_all(omp_pause_hard); }, nullptr, nullptr);
+#endif
+}
+
 }  // namespace
 }  // namespace selvedge
 
 NB_MODULE(_selvedge, module) {
   if (const auto limited = selvedge::limit_threads())
     if (PyErr_WarnEx(PyExc_RuntimeWarning, limited->c_str(), 1) < 0) throw nanobind::python_error();
+  selvedge::end_threads_at_forks();
   const nanobind::object error = nanobind::exception<selvedge::Error>(module, "Error", PyExc_ValueError);
   nanobind::register_exception_translator(selvedge::raise_error, error.ptr());
   module.attr("__version__") = selvedge::program_version();

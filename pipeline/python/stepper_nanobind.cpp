@@ -147,7 +147,7 @@ MakeStepper python_maker(const std::string& kind, const nb::handle& type, const 
   const nb::object base = steppers_module().attr("Stepper");
   if (!PyType_Check(type.ptr()) || PyObject_IsSubclass(type.ptr(), base.ptr()) != 1)
     throw Error("is no subclass of selvedge.Stepper", "stepper `" + kind + "`",
-                "give the class itself, not an instance");
+                "give the class itself, neither an instance nor a name; scene files name the program's own steppers");
   return [kind, type = kept(nb::borrow(type), held), held](const Scene& scene) -> std::unique_ptr<Stepper> {
     const nb::gil_scoped_acquire lock;
     return std::make_unique<PythonStepper>(kind, type, scene, held);

@@ -112,7 +112,7 @@ std::string frame_cure(const Mesh& mesh, const Points& body, const Triangles& bo
 Garment dressed_as_worn(const Config& section, const std::string& name, const Mesh& mesh, const Performance& who,
                         const Mesh& as_read) {
   const Points body = shaped(who.body.skin, who.given_shape);
-  if (worn_part(mesh.x, body).places.empty())
+  if (worn_part(of_triangles(mesh.x, mesh.triangles), body).places.empty())
     section["file"].fail("is not worn: hardly a vertex lies on the body in its zero pose",
                          frame_cure(as_read, body, who.body.skin.triangles));
   const Dressing how{who.given_shape, {}, section["fit"].text() == "tight" ? Fit::tight : Fit::loose, {}};

@@ -11,8 +11,8 @@
 #include "collision/exact/outward_faces.hpp"
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/disjoint_sets.hpp"
-#include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
+#include "pipeline/formats/seam_places.hpp"
 
 namespace selvedge {
 namespace {
@@ -131,7 +131,7 @@ void leave_out_backs(const std::string& name, const std::vector<int>& places, Tr
 
 }  // namespace
 
-void turn_outward(const std::string& name, const NamedVertices& groups, std::span<const Points> frames,
+bool turn_outward(const std::string& name, const NamedVertices& groups, std::span<const Points> frames,
                   const std::vector<int>& places, Triangles& triangles, std::vector<std::string>& warnings) {
   leave_out_backs(name, places, triangles, warnings);
   OutwardFaces outward = face_outward(triangles, frames, places);
@@ -143,10 +143,11 @@ void turn_outward(const std::string& name, const NamedVertices& groups, std::spa
   for (const Shell& shell : outward.shells) add(shell, by_group[group_of[shell.vertex]]);
   for (const auto& [group, found] : by_group)
     say(group < 0 ? name : fmt::format("{}, mesh `{}`", name, groups[group].first), found, warnings);
+  return std::ranges::any_of(outward.shells, [](const Shell& s) { return s.closed() || s.nearly_closed(); });
 }
 
 void turn_outward(const std::string& name, Mesh& mesh, std::vector<std::string>& warnings) {
-  turn_outward(name, mesh.groups, {&mesh.x, 1}, same_places(mesh.x), mesh.triangles, warnings);
+  turn_outward(name, mesh.groups, {&mesh.x, 1}, seam_places({&mesh.x, 1}, mesh.triangles), mesh.triangles, warnings);
 }
 
 }  // namespace selvedge

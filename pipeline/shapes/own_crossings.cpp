@@ -8,9 +8,9 @@
 
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/pair_budget.hpp"
-#include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
 #include "collision/search/intersections.hpp"
+#include "pipeline/formats/seam_places.hpp"
 
 namespace selvedge {
 
@@ -64,7 +64,8 @@ void warn_of_crossings(const std::string& name, const OwnCrossings& found, std::
 }
 
 void warn_of_crossings(const std::string& name, const Mesh& mesh, std::vector<std::string>& warnings) {
-  warn_of_crossings(name, own_crossings(mesh.groups, mesh.x, mesh.triangles, same_places(mesh.x)), warnings);
+  warn_of_crossings(name, own_crossings(mesh.groups, mesh.x, mesh.triangles, seam_places({&mesh.x, 1}, mesh.triangles)),
+                    warnings);
 }
 
 }  // namespace selvedge

@@ -16,6 +16,7 @@
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/hdf5/hdf5_fields.hpp"
+#include "pipeline/host/file_formats.hpp"
 #include "pipeline/host/label_lines.hpp"
 #include "pipeline/host/lower_extension.hpp"
 #include "pipeline/host/numbers_json.hpp"
@@ -46,12 +47,13 @@ BodyModel read_mesh_body(const BodyRequest& request) {
 
 BodyModel read(const BodyRequest& request, BodyReport& report) {
   const std::string extension = lower_extension(request.file);
-  if (extension == ".glb" || extension == ".gltf") {
+  if (is_gltf(request.file)) {
     if (request.unit != "m")
       throw Error("is given for glTF, which is in metres", "--unit " + request.unit, "leave it out");
     refuse_axis(request, "glTF");
     GltfRig rig = read_gltf_rig(request.file, request.meshes);
     for (const GltfAnimation& animation : rig.scene.animations) report.animations.push_back(animation.name);
+    report.warnings = rig.scene.mesh.warnings;
     return std::move(rig.body);
   }
   if (extension == ".npz") {
@@ -62,7 +64,8 @@ BodyModel read(const BodyRequest& request, BodyReport& report) {
   }
   if (extension != ".obj" && extension != ".ply")
     throw Error("is neither a mesh (.obj, .ply), a model of the SMPL family (.npz) nor glTF (.glb, .gltf)",
-                request.file.string(), "write other bodies in HDF5 yourself, see docs/bodies.md");
+                request.file.string(),
+                export_cure(request.file, ".glb", "write other bodies in HDF5 yourself, see docs/bodies.md"));
   BodyModel body = read_mesh_body(request);
   turn_y_up(request.up, body);
   return body;

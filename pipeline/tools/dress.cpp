@@ -103,7 +103,7 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, const 
   report.body_pairs = static_cast<int>(found.obstacle_pairs.size());
   if (cloth.nonmanifold_edges > 0)
     report.warnings.push_back(counted(cloth.nonmanifold_edges, "edge") + " of more than two triangles");
-  report.on_body = !worn_part(x, body).places.empty();
+  report.on_body = !worn_part(of_triangles(x, triangles), body).places.empty();
   if (!report.on_body)
     report.warnings.push_back("is not worn: hardly a vertex lies on the body; " + cure());
   else if (report.mean_distance > far_away)

@@ -15,11 +15,16 @@ def arguments(node):
     return [arg.arg for arg in a.posonlyargs + a.args + a.kwonlyargs if arg.arg != "self"]
 
 
+def functions(body):
+    """Of the stub, without the setters of properties."""
+    return [node for node in body if isinstance(node, ast.FunctionDef) and
+            not any(isinstance(mark, ast.Attribute) and mark.attr == "setter" for mark in node.decorator_list)]
+
+
 def stubbed(body):
     found = {}
-    for node in body:
-        if isinstance(node, ast.FunctionDef):
-            found.setdefault(node.name, []).append(arguments(node))
+    for node in functions(body):
+        found.setdefault(node.name, []).append(arguments(node))
     return found
 
 
@@ -33,9 +38,8 @@ def real(thing):
 def stub_docs(body):
     """Docstrings of functions and methods, one an overload, without breaks of lines."""
     found = {}
-    for node in body:
-        if isinstance(node, ast.FunctionDef):
-            found.setdefault(node.name, []).append(" ".join((ast.get_docstring(node) or "").split()))
+    for node in functions(body):
+        found.setdefault(node.name, []).append(" ".join((ast.get_docstring(node) or "").split()))
     return found
 
 
@@ -49,9 +53,9 @@ def public(thing):
 
 
 def test_functions():
-    functions = stubbed(STUB.body)
-    assert set(functions) == {name for name in public(_selvedge) if not isinstance(getattr(_selvedge, name), type)}
-    for name, all_arguments in functions.items():
+    found = stubbed(STUB.body)
+    assert set(found) == {name for name in public(_selvedge) if not isinstance(getattr(_selvedge, name), type)}
+    for name, all_arguments in found.items():
         assert all_arguments == real(getattr(_selvedge, name)), name
 
 

@@ -183,9 +183,13 @@ class Scene:
     def x(self) -> Numbers:
         """Positions of all cloths on end, n x 3 [m]: a view without a copy, which shows the present state after every
         step. What is written to it changes the state."""
+    @x.setter
+    def x(self, array: npt.ArrayLike) -> None: ...
     @property
     def v(self) -> Numbers:
         """Velocities, n x 3 [m/s]: a view without a copy."""
+    @v.setter
+    def v(self, array: npt.ArrayLike) -> None: ...
     @property
     def triangles(self) -> Indices:
         """m x 3, of all cloths: a copy."""

@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include <catch2/catch.hpp>
 
 #include <fmt/format.h>
@@ -70,7 +72,9 @@ TEST_CASE("Quantities carry their unit or are SI", "[config]") {
   CHECK(read_quantity("150 g/m^2", Unit::areal_density).value == Approx(0.15));
   CHECK(read_quantity("150 g/m\xC2\xB2", Unit::areal_density).value == Approx(0.15));
   CHECK(read_quantity("180 deg", Unit::angle).value == Approx(3.14159265358979));
-  CHECK(read_quantity("5 uN m", Unit::bending).value == Approx(5e-6));
+  for (const char* text : {"5 uN m", "5 \u00b5N m", "5\u03bcNm"})
+    CHECK(read_quantity(text, Unit::bending).value == Approx(5e-6));
+  CHECK(read_quantity("90\u00b0", Unit::angle).value == Approx(std::numbers::pi / 2));
   CHECK(read_quantity("+1e-3", Unit::length).value == Approx(1e-3));
   CHECK(read_quantity("36 km/h", Unit::speed).value == Approx(10));
   CHECK(read_quantity(".5", Unit::none).problem.empty());

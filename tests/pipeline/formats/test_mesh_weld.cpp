@@ -200,4 +200,25 @@ TEST_CASE("join_alike: copies and vertices of no triangle become part of what li
   }
 }
 
+TEST_CASE("join_alike: seams that an export has rounded are closed, and rings of other weights", "[mesh_weld]") {
+  for (const double off : {1e-6, 1e-4, 8e-3}) {  // of an edge; a fiftieth of it is the most
+    Mesh cube = cubes_in_a_row(1, true);
+    for (Eigen::Index v = 0; v < cube.x.rows(); ++v) cube.x(v, v % 3) += v % 2 == 0 ? off : -off;
+    INFO(off);
+    CHECK(is_closed(surface_of(joined_alike(cube, {0}))));
+  }
+  // Two halves of a cube, of a joint each.
+  Mesh halves = cubes_in_a_row(1, true);
+  std::vector<Eigen::Triplet<double>> weights;
+  for (int v = 0; v < halves.x.rows(); ++v) weights.emplace_back(v, v < 12 ? 0 : 1, 1.0);
+  join_alike(weights, 2, std::vector<int>(24, 0), halves, "body.glb");
+  CHECK(is_closed(surface_of(halves)));
+  // Vertices with short edges are joined only where they are as near as ever.
+  Mesh small = cubes_in_a_row(2, true);
+  small.x.bottomRows(24) *= 0.01;
+  for (int v = 24; v < 48; ++v) small.x(v, v % 3) += 2e-5 * v;
+  const Mesh joined = joined_alike(small, {0, 1});
+  CHECK(joined.x.rows() == 8 + 24);
+}
+
 }  // namespace selvedge::test_mesh_weld

@@ -39,6 +39,12 @@ TEST_CASE("unit and axis of a garment's file are known from where it lies on the
         const auto found = clear_frame(fitting_frames(x, piece.triangles, body.skin.rest, body.skin.triangles));
         REQUIRE(found);
         CHECK(frame_text(*found) == frame_text(meant));
+        // Vertices in no triangle do not count.
+        Points stray(x.rows() + 1, 3);
+        stray << x, Eigen::RowVector3d::Constant(50 * x.cwiseAbs().maxCoeff());
+        const auto again = clear_frame(fitting_frames(stray, piece.triangles, body.skin.rest, body.skin.triangles));
+        REQUIRE(again);
+        CHECK(frame_text(*again) == frame_text(meant));
         // What is given is not asked.
         for (const FrameFit& fit : fitting_frames(x, piece.triangles, body.skin.rest, body.skin.triangles, "cm", Up::z))
           CHECK(frame_text(fit.frame) == "cm, z up");

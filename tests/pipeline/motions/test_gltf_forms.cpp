@@ -150,4 +150,49 @@ TEST_CASE("glTF: extensions of files may be in capitals", "[gltf_forms]") {
   CHECK(read_setup(scene).scene.obstacles.size() == 1);
 }
 
+TEST_CASE("glTF: meshes that the file does not show, or that hang on a joint, are left out and named", "[gltf_forms]") {
+  const Folder folder("gltf_hidden");
+  const BodyModel body = fake::body(4, 12, 0, false);
+  fake::GltfFile file = fake::gltf_of(body, {}, body.joints);
+  auto& json = file.json;
+  const auto read = [&](const NameChoice& choice) {
+    return read_gltf(fake::write(folder, "rig.vrm", file.glb()), choice).mesh;
+  };
+  const Mesh plain = read({});
+  CHECK(plain.warnings.empty());
+  json["meshes"].push_back(json["meshes"][0]);
+  json["meshes"][1]["name"] = "spare";
+  json["nodes"].push_back({{"name", "spare"}, {"mesh", 1}, {"skin", 0}});
+  const auto number = json["nodes"].size() - 1;
+  const auto scene = json["scenes"][0]["nodes"];
+  for (const char* how : {"in no scene", "hidden", "below a hidden one"}) {
+    INFO(how);
+    if (how[0] == 'h') {
+      json["scenes"][0]["nodes"].push_back(number);
+      json["nodes"][number]["extensions"]["KHR_node_visibility"]["visible"] = false;
+    } else if (how[0] == 'b') {
+      json["nodes"].push_back(json["nodes"][number]);
+      json["nodes"].back().erase("mesh");
+      json["nodes"].back().erase("skin");
+      json["nodes"].back()["children"] = {number};
+      json["nodes"][number].erase("extensions");
+      json["scenes"][0]["nodes"].back() = number + 1;
+    }
+    const Mesh mesh = read({});
+    CHECK(mesh.x == plain.x);
+    REQUIRE(mesh.warnings.size() == 1);
+    CHECK_THAT(mesh.warnings[0], Contains("rig.vrm: mesh `spare` is left out") && Contains("does not show it"));
+    CHECK(read({{"spare"}, {}}).warnings.empty());
+  }
+  // The same mesh on a joint, without a skin.
+  json["scenes"][0]["nodes"] = scene;
+  json["nodes"][number].erase("skin");
+  json["nodes"].erase(json["nodes"].size() - 1);
+  json["nodes"][json["skins"][0]["joints"][0].get<std::size_t>()]["children"].push_back(number);
+  const Mesh mesh = read({});
+  CHECK(mesh.x == plain.x);
+  REQUIRE(mesh.warnings.size() == 1);
+  CHECK_THAT(mesh.warnings[0], Contains("`spare` is left out: it hangs on a joint and has no skin"));
+}
+
 }  // namespace selvedge::test_gltf_forms

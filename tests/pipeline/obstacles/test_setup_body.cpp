@@ -235,7 +235,7 @@ TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_b
   CHECK_THROWS_WITH(with_body(folder, "{shape: [tall]}"), Contains("list of them"));
   CHECK_THROWS_WITH(with_body(folder, "{model: person.npz}"), Contains("missing file"));
   fake::write(folder, "person.fbx", "");
-  CHECK_THROWS_WITH(with_body(folder, "{model: person.fbx}"), Contains("docs/bodies.md"));
+  CHECK_THROWS_WITH(with_body(folder, "{model: person.fbx}"), Contains("export it as .glb"));
   fake::write(folder, "person.h5", "no hdf5");
   CHECK_THROWS_WITH(with_body(folder, "{model: person.h5}"), Contains("person.h5"));
 }

@@ -50,6 +50,10 @@ TEST_CASE("obstacles: seams of a mesh are closed, and its vertices stay in their
   CHECK(box.surface.vertex_count == 24);
   CHECK(box.surface.triangles.rows() == 12);
   CHECK_FALSE(is_closed(read_obstacle(folder, "mesh: open.obj").surface));
+  // A seam that an export has rounded is one all the same.
+  fake::write(folder, "rounded.obj", loose_box(1e-4));
+  CHECK(is_closed(read_obstacle(folder, "mesh: rounded.obj").surface));
+  CHECK(is_closed(read_obstacle(folder, "sequence: {files: [box.obj, rounded.obj], fps: 30}").surface));
   // What opens in any frame is open in all.
   CHECK(is_closed(read_obstacle(folder, "sequence: {files: [box.obj, box.obj], fps: 30}").surface));
   CHECK_FALSE(is_closed(read_obstacle(folder, "sequence: {files: [box.obj, open.obj], fps: 30}").surface));
