@@ -274,7 +274,7 @@ TEST_CASE("Bad PLY files are refused with file and place", "[mesh_io]") {
 
 TEST_CASE("Files that are not there or of unknown kind are refused", "[mesh_io]") {
   CHECK_THROWS_WITH(read_mesh("nowhere.obj"), Contains("nowhere.obj") && Contains("cannot be opened"));
-  CHECK_THROWS_WITH(read_mesh("mesh.stl"), Contains(".obj, .ply"));
+  CHECK_THROWS_WITH(read_mesh("mesh.stl"), Contains("export it as .obj or .ply"));
   CHECK_THROWS_AS(read_mesh(std::filesystem::temp_directory_path()), Error);
   const Folder folder("mesh");
   std::filesystem::create_directory(folder.path / "a.obj");
