@@ -93,8 +93,9 @@ StepReport RecoveringStepper::step_parted(const State& from, const Drive& drive,
   Stopwatch watch;
   const Points wanted = gather_nodes(from.x, drive.obstacles);
   const LastClean before = from.clean ? LastClean{} : last_clean(from);
-  const RecoveryTargets where{&wanted, &drive.skinned_targets, gather_nodes(before.x, before.obstacles),
-                              scene_.contact.thickness, dt, apart_bodies(drive)};
+  const RecoveryTargets where{
+      &wanted, &drive.skinned_targets, gather_nodes(before.x, before.obstacles), scene_.contact.thickness,
+      dt,      apart_bodies(drive)};
   Points nodes = gather_nodes(from.x, from.obstacles), v = from.v;
   UntanglingBudget budget{options_.untangling_passes, &extras.stop};
   const Parting parting = part_at_start(world_, self_crossings_, inverse_mass_, edge_length_, from.clean, where,
