@@ -99,7 +99,7 @@ def begin():
     """Once there is a window."""
     install(archive, program)
     scene = bpy.context.scene
-    scene.frame_start, scene.frame_end = FIRST, FIRST + 60
+    scene.frame_start, scene.frame_end = FIRST, FIRST + 600  # so many that no machine ends before it is told to stop
     body, garment = boxes(), sheet()
     for thing in (body, garment):
         thing.select_set(True)

@@ -15,7 +15,7 @@ import pytest
 
 PROGRAM = os.environ.get("SELVEDGE_PROGRAM")
 HERE = pathlib.Path(__file__).parent
-FRAMES = 60
+FRAMES = 600
 QUIT_WITHIN = 60  # seconds in which the program has to end after Blender, on a busy machine
 
 
