@@ -238,14 +238,14 @@ struct PosedCubes {
     by_vertex.resize(blocks.size() * in_a_block / 2);
     for (std::size_t g = 0; g < blocks.size() * in_a_block; ++g)
       for (int i = 0; i < in_a_group; ++i) {
-        const bool filled_in = g < in_group.size() && first_vertex[g] + i < first_vertex[g + 1];
-        const int p = filled_in ? first_vertex[g] + i : 0;
+        const bool is_used = g < in_group.size() && first_vertex[g] + i < first_vertex[g + 1];
+        const int p = is_used ? first_vertex[g] + i : 0;
         const std::size_t lane = g % 2 * in_a_group + static_cast<std::size_t>(i);
         float(&at)[9][2 * in_a_group] = by_vertex[g / 2].at;
         for (int k = 0; k < 3; ++k) {
-          at[k][lane] = filled_in ? static_cast<float>(x_near(p, k)) : none;
-          at[3 + k][lane] = filled_in ? static_cast<float>(normals_near(p, k)) : none;
-          at[6 + k][lane] = filled_in ? static_cast<float>(rest_near(p, k)) : none;
+          at[k][lane] = is_used ? static_cast<float>(x_near(p, k)) : none;
+          at[3 + k][lane] = is_used ? static_cast<float>(normals_near(p, k)) : none;
+          at[6 + k][lane] = is_used ? static_cast<float>(rest_near(p, k)) : none;
         }
       }
   }
@@ -289,14 +289,12 @@ struct PosedCubes {
     return std::any_of(anew.begin() + begin, anew.begin() + end, [](char marked) { return marked != 0; });
   }
 
-  // Those of the groups that may face a vertex in the bounds within a distance, squared; with `all` false, only those
-  // that have moved.
-  unsigned facing_of(const Bounds& bounds, bool all, Near near, double square) const {
-    const unsigned groups = all ? near.groups : near.groups & moved[near.block];
-    return groups != 0 ? groups & may_face(bounds, blocks[near.block], static_cast<float>(square) * (1 + widened)) : 0;
-  }
+  // Keeps those of the groups that may face a vertex in the bounds within reach; with `all` false, only those that have
+  // moved.
   void keep_facing(const Bounds& bounds, bool all, Near from, std::vector<Near>& kept) const {
-    from.groups = facing_of(bounds, all, from, body.reach * body.reach);
+    const float most = static_cast<float>(body.reach * body.reach) * (1 + widened);
+    if (!all) from.groups &= moved[from.block];
+    if (from.groups != 0) from.groups &= may_face(bounds, blocks[from.block], most);
     if (from.groups != 0) kept.push_back(from);
   }
 

@@ -16,7 +16,7 @@ def arguments(node):
 
 
 def functions(body):
-    """Of the stub, without the setters of properties."""
+    """The functions of a part of the type stub (_selvedge.pyi), without the setters of properties."""
     return [node for node in body if isinstance(node, ast.FunctionDef) and
             not any(isinstance(mark, ast.Attribute) and mark.attr == "setter" for mark in node.decorator_list)]
 
