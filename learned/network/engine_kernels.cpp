@@ -146,9 +146,13 @@ SELVEDGE_TARGET("avx512f,avx512vl,avx512dq,avx2,fma") float exercise_avx512(long
   return exercise_registers<16>(n, factor);
 }
 
-constexpr EngineKernels plain_kernels{8, 4, multiply_plain, add_pairs_plain, finish_plain, exercise_plain};
-constexpr EngineKernels avx2_kernels{16, 8, multiply_avx2, add_pairs_avx2, finish_avx2, exercise_avx2};
-constexpr EngineKernels avx512_kernels{32, 16, multiply_avx512, add_pairs_avx512, finish_avx512, exercise_avx512};
+constexpr EngineKernels plain_kernels{8, 4, false, multiply_plain, add_pairs_plain, finish_plain, exercise_plain};
+constexpr EngineKernels avx2_kernels{16, 8, false, multiply_avx2, add_pairs_avx2, finish_avx2, exercise_avx2};
+constexpr EngineKernels avx512_kernels{
+    32, 16, false, multiply_avx512, add_pairs_avx512, finish_avx512, exercise_avx512};
+#if defined(__x86_64__)
+constexpr EngineKernels int16_kernels{32, 16, true, multiply_int16, add_pairs_avx512, finish_avx512, exercise_avx512};
+#endif
 
 }  // namespace
 
@@ -157,8 +161,10 @@ bool is_supported(InstructionSet set) {
 #if defined(__x86_64__)
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (set == InstructionSet::avx2) return avx2;
-  return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512dq");
+  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                      __builtin_cpu_supports("avx512dq");
+  if (set == InstructionSet::avx512) return avx512;
+  return avx512 && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vnni");
 #else
   return false;
 #endif
@@ -171,12 +177,16 @@ InstructionSet best_instruction_set() {
 }
 
 std::string name_of(InstructionSet set) {
+  if (set == InstructionSet::int16) return "AVX-512 VNNI";
   return set == InstructionSet::avx512 ? "AVX-512" : set == InstructionSet::avx2 ? "AVX2" : "plain";
 }
 
 const EngineKernels& kernels_for(InstructionSet set) {
   if (!is_supported(set))
     throw Error("this machine does not have the instruction set", name_of(set), "choose another one");
+#if defined(__x86_64__)
+  if (set == InstructionSet::int16) return int16_kernels;
+#endif
   return set == InstructionSet::avx512 ? avx512_kernels : set == InstructionSet::avx2 ? avx2_kernels : plain_kernels;
 }
 

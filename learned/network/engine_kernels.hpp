@@ -5,17 +5,22 @@
 namespace selvedge {
 
 // Instruction sets of the kernels: plain x86-64 (or the machine's own), AVX2 with FMA, AVX-512. Results differ by
-// rounding.
-enum class InstructionSet { plain, avx2, avx512 };
+// rounding. `int16` multiplies integers of 16 bits and adds up in 32 (AVX-512 VNNI); it has no kernels for training.
+enum class InstructionSet { plain, avx2, avx512, int16 };
 
 bool is_supported(InstructionSet);      // by this machine
-InstructionSet best_instruction_set();  // of the supported ones
+InstructionSet best_instruction_set();  // of the supported ones with 32-bit floats
 std::string name_of(InstructionSet);
 
 // Rows of activations that pass all layers of a perceptron while they are in the cache.
 constexpr int tile_rows = 24;
 // Rows of floats are padded with zeros to a multiple of this: whole panels for every instruction set.
 constexpr int padding = 32;
+
+// `int16` reads inputs two at a time, and the last of an odd number with a zero. Inputs are whole numbers up to this;
+// the weights of an output are such that no sum leaves 32 bits.
+constexpr int largest_input = 16383;
+inline int pairs_of(int inputs) { return (inputs + 1) / 2; }
 
 inline int padded(int columns) { return (columns + padding - 1) / padding * padding; }
 
@@ -24,8 +29,9 @@ inline int padded(int columns) { return (columns + padding - 1) / padding * padd
 struct LayerTile {
   const float* const* input = nullptr;  // one pointer per row
   int inputs = 0;
-  const float* weight = nullptr;  // panels of outputs, one after the other; a panel has one row per input
+  const float* weight = nullptr;  // panels of outputs, one after the other; a panel has one row per input, or per pair
   const float* bias = nullptr;    // padded
+  const float* unit = nullptr;    // of each output's integer weights, padded; null: weights are floats
   float* out = nullptr;
   int stride = 0;                      // of `out`
   int outputs = 0;                     // padded to whole panels
@@ -58,8 +64,9 @@ struct ResultTile {
 
 // The inner loops, compiled for one instruction set.
 struct EngineKernels {
-  int panel;  // outputs per panel
-  int lanes;  // floats per vector
+  int panel;   // outputs per panel
+  int lanes;   // floats per vector
+  bool pairs;  // a weight is two integers, those of a pair of inputs
   void (*multiply)(const LayerTile&);
   void (*add_pairs)(const PairTile&);
   void (*finish)(const ResultTile&);
@@ -67,6 +74,9 @@ struct EngineKernels {
   float (*exercise)(long iterations, float factor);
 };
 constexpr int exercise_chains = 12;
+
+// LayerTile with integer weights in pairs, without a mask.
+void multiply_int16(const LayerTile&);
 
 // Throws Error where the machine does not have the set.
 const EngineKernels& kernels_for(InstructionSet);

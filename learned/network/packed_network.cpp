@@ -1,6 +1,11 @@
 #include "learned/network/packed_network.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "learned/network/engine_kernels.hpp"
 
@@ -9,25 +14,27 @@ namespace {
 
 int whole_panels(int columns, int panel) { return (columns + panel - 1) / panel * panel; }
 
-PackedLayer layer_shape(int inputs, int outputs, int panel) {
+PackedLayer layer_shape(int inputs, int outputs, const EngineKernels& kernels) {
   PackedLayer packed;
   packed.inputs = inputs;
-  packed.outputs = whole_panels(outputs, panel);
-  packed.weight = AlignedFloats(static_cast<std::size_t>(packed.outputs) * static_cast<std::size_t>(inputs));
+  packed.outputs = whole_panels(outputs, kernels.panel);
+  if (kernels.pairs) packed.unit = AlignedFloats(static_cast<std::size_t>(padded(outputs)));
+  const int rows = kernels.pairs ? pairs_of(inputs) : inputs;
+  packed.weight = AlignedFloats(static_cast<std::size_t>(packed.outputs) * static_cast<std::size_t>(rows));
   packed.bias = AlignedFloats(static_cast<std::size_t>(padded(outputs)));
   return packed;
 }
 
 // The first layer reads `blocks` blocks of `block` inputs.
-PackedPerceptron perceptron_shape(const Architecture& a, int blocks, int block, int outputs, bool norm, int panel,
-                                  PackedWay way) {
+PackedPerceptron perceptron_shape(const Architecture& a, int blocks, int block, int outputs, bool norm,
+                                  const EngineKernels& kernels, PackedWay way) {
   const bool forward = way == PackedWay::forward;
   PackedPerceptron packed;
   for (int i = 0; i < blocks; ++i)
-    packed.blocks.push_back(forward ? layer_shape(block, a.width, panel) : layer_shape(a.width, block, panel));
+    packed.blocks.push_back(forward ? layer_shape(block, a.width, kernels) : layer_shape(a.width, block, kernels));
   for (int layer = 1; layer <= a.hidden_layers; ++layer) {
     const int to = layer == a.hidden_layers ? outputs : a.width;
-    packed.layers.push_back(forward ? layer_shape(a.width, to, panel) : layer_shape(to, a.width, panel));
+    packed.layers.push_back(forward ? layer_shape(a.width, to, kernels) : layer_shape(to, a.width, kernels));
   }
   if (forward && norm && a.layer_norm) {
     packed.scale = AlignedFloats(static_cast<std::size_t>(padded(outputs)));
@@ -45,6 +52,37 @@ void fill_forward(const FeatureRows& weight, Eigen::Index begin, int panel, Pack
     const float* from = weight.row(i).data() + begin;
     float* to = panels + static_cast<std::ptrdiff_t>(i / panel) * panel * packed.inputs + i % panel;
     for (int k = 0; k < packed.inputs; ++k) to[static_cast<std::ptrdiff_t>(k) * panel] = from[k];
+  }
+}
+
+// The unit in which an output's weights become whole numbers. No weight is above 16 bits then, and no sum with inputs
+// up to `largest_input` above 32, whatever the inputs and however each weight is rounded.
+float unit_of(const float* weight, int inputs) {
+  float sum = 0, largest = 0;
+  for (int k = 0; k < inputs; ++k) {
+    sum += std::abs(weight[k]);
+    largest = std::max(largest, std::abs(weight[k]));
+  }
+  const int most = std::numeric_limits<std::int32_t>::max() / largest_input - inputs;
+  return std::max(sum / static_cast<float>(most), largest / std::numeric_limits<std::int16_t>::max());
+}
+
+std::uint32_t whole(float weight, float unit) {
+  const float ratio = weight / unit;  // no number for zero weights
+  return std::isfinite(ratio) ? static_cast<std::uint16_t>(std::lround(ratio)) : 0u;
+}
+
+// The same as whole numbers. Those of two neighbours lie in one place, the first in its lower half.
+void fill_pairs(const FeatureRows& weight, Eigen::Index begin, int panel, PackedLayer& packed) {
+  const int pairs = pairs_of(packed.inputs);
+  for (int i = 0; i < static_cast<int>(weight.rows()); ++i) {
+    const float* from = weight.row(i).data() + begin;
+    const float unit = packed.unit.data()[i] = unit_of(from, packed.inputs);
+    float* to = packed.weight.data() + static_cast<std::ptrdiff_t>(i / panel) * panel * pairs + i % panel;
+    for (int k = 0; k < pairs; ++k) {
+      const std::uint32_t second = 2 * k + 1 < packed.inputs ? whole(from[2 * k + 1], unit) : 0;
+      to[static_cast<std::ptrdiff_t>(k) * panel] = std::bit_cast<float>(whole(from[2 * k], unit) | second << 16);
+    }
   }
 }
 
@@ -97,9 +135,10 @@ void visit_perceptrons(const NetworkWeights& weights, PackedNetwork& packed, Vis
 }  // namespace
 
 PackedNetwork packed_shapes(const Architecture& a, InstructionSet set, PackedWay way) {
-  const int panel = kernels_for(set).panel;
+  const EngineKernels& kernels = kernels_for(set);
+  assert(way == PackedWay::forward || !kernels.pairs);
   const auto shape = [&](int blocks, int block, int outputs, bool norm) {
-    return perceptron_shape(a, blocks, block, outputs, norm, panel, way);
+    return perceptron_shape(a, blocks, block, outputs, norm, kernels, way);
   };
   PackedNetwork packed;
   packed.architecture = a;
@@ -116,7 +155,8 @@ PackedNetwork packed_shapes(const Architecture& a, InstructionSet set, PackedWay
 }
 
 void pack_again(const NetworkWeights& weights, PackedWay way, PackedNetwork& packed) {
-  const int panel = kernels_for(packed.set).panel;
+  const EngineKernels& kernels = kernels_for(packed.set);
+  const int panel = kernels.panel;
   const bool forward = way == PackedWay::forward;
   std::vector<PackTask> tasks;
   visit_perceptrons(weights, packed, [&](const Perceptron& p, PackedPerceptron& to) {
@@ -127,7 +167,9 @@ void pack_again(const NetworkWeights& weights, PackedWay way, PackedNetwork& pac
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < count; ++i) {
     const PackTask& task = tasks[static_cast<std::size_t>(i)];
-    if (forward)
+    if (kernels.pairs)
+      fill_pairs(task.from->weight, task.begin, panel, *task.to);
+    else if (forward)
       fill_forward(task.from->weight, task.begin, panel, *task.to);
     else
       fill_backward(task.from->weight, task.begin, task.columns, panel, *task.to);

@@ -13,10 +13,11 @@ namespace selvedge {
 struct PackedLayer {
   int inputs = 0, outputs = 0;  // outputs: padded
   AlignedFloats weight, bias;   // bias: zero except in the first block
+  AlignedFloats unit;           // of integer weights, else empty
 
   // The tile that reads the rows `input` and writes `out`, for the kernels.
   LayerTile tile(const float* const* input, float* out, int stride, int rows) const {
-    return {input, inputs, weight.data(), bias.data(), out, stride, outputs, weight.data(), rows};
+    return {input, inputs, weight.data(), bias.data(), unit.data(), out, stride, outputs, weight.data(), rows};
   }
 };
 

@@ -39,6 +39,13 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
                        std::to_string(architecture.steps.size()) + " message-passing steps"});
   lines.push_back(settling_line(architecture, learned.settle));
   lines.push_back({"libtorch", learned.device != NetworkDevice::cpu, device_sentence(learned.device)});
+  if (learned.device == NetworkDevice::cpu) {
+    const bool whole = kernels_of(learned.numbers) == InstructionSet::int16;
+    lines.push_back({"16-bit integers", whole,
+                     whole ? "in the network's products, as run.learned.numbers asks"
+                     : learned.numbers == NetworkNumbers::automatic ? "this processor has no instruction for them"
+                                                                    : "not asked for by run.learned.numbers"});
+  }
   lines.push_back({"coarse edges", !options.coarse_sets.empty(),
                    std::to_string(options.coarse_sets.size()) + " of " + std::to_string(options.coarse_levels) +
                        " levels; a piece too small for one has none"});

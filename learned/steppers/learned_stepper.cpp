@@ -35,7 +35,7 @@ class LearnedStepper final : public Stepper {
         settles_(may_settle(architecture) &&
                  (options.settle || architecture.integration == Integration::relaxation_frame)),
         tables_(weights.tables),
-        network_(pack_network(architecture, weights)),
+        network_(pack_network(architecture, weights, kernels_of(options.numbers))),
         torch_(torch_network_for(options.device, architecture, weights)),
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
         elastic_(features_.guess_inputs ? make_elastic(scene) : Elastic{}),

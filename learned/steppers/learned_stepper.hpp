@@ -16,6 +16,7 @@ struct LearnedOptions {
   std::vector<int> omitted_body_vertices = {};  // indices over all obstacles: no edges, as for hands in HOOD
   std::vector<int> centres = {};                // centres of coarse levels, at most one per piece; others are chosen
   NetworkDevice device = NetworkDevice::cpu;
+  NetworkNumbers numbers = NetworkNumbers::float32;  // of the CPU's kernels
 };
 
 // Whether a roll-out may begin with a settling pass: a network that adds to the carried guess takes the cloth as

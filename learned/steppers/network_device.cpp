@@ -12,6 +12,18 @@ std::vector<std::pair<std::string, NetworkDevice>> network_devices() {
           {"auto", NetworkDevice::automatic}};
 }
 
+std::vector<std::pair<std::string, NetworkNumbers>> network_numbers() {
+  return {{"float32", NetworkNumbers::float32}, {"int16", NetworkNumbers::int16}, {"auto", NetworkNumbers::automatic}};
+}
+
+InstructionSet kernels_of(NetworkNumbers numbers) {
+  const bool has = is_supported(InstructionSet::int16);
+  if (numbers == NetworkNumbers::int16 && !has)
+    throw Error("this processor does not add up products of 16-bit integers (AVX-512 VNNI)",
+                "run.learned.numbers: int16", "give `auto` or `float32`");
+  return numbers == NetworkNumbers::float32 || !has ? best_instruction_set() : InstructionSet::int16;
+}
+
 namespace {
 
 // Throws Error that names the key and a cure for machines without such a device.

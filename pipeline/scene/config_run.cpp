@@ -44,7 +44,10 @@ const Options<LearnedRun>& learned_options() {
             "ContourCraft's training. HOOD always has this pass."),
        choice("device", &O::device, network_devices(),
               "What computes the network. `cpu`: the program's kernels. `libtorch`: libtorch on the CPU (`make "
-              "torch`). `cuda`: libtorch on a GPU. `auto`: `cuda` where there is a GPU, else `cpu`.")});
+              "torch`). `cuda`: libtorch on a GPU. `auto`: `cuda` where there is a GPU, else `cpu`."),
+       choice("numbers", &O::numbers, network_numbers(),
+              "Numbers that the device `cpu` multiplies. `int16`: integers of 16 bits with a scale for each row, on "
+              "processors with AVX-512 VNNI. `auto`: those where the processor has them, else `float32`.")});
   return table;
 }
 

@@ -105,7 +105,8 @@ LearnedOptions learned_options(const Setup& setup) {
   return {.settle = setup.run.learned.settle,
           .omitted_body_vertices = {},
           .centres = {},
-          .device = setup.run.learned.device};
+          .device = setup.run.learned.device,
+          .numbers = setup.run.learned.numbers};
 }
 
 MakeStepper learned_maker(const Setup& setup) {

@@ -16,6 +16,7 @@ struct LearnedRun {
   std::string weights;
   bool settle = false;
   NetworkDevice device = NetworkDevice::cpu;
+  NetworkNumbers numbers = NetworkNumbers::float32;
 };
 
 // The repulsive layer behind the stepper (learned/steppers/refu_stepper.hpp). Members are described where keys are

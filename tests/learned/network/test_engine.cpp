@@ -82,6 +82,47 @@ TEST_CASE("engine: every instruction set computes what the definition says", "[l
   }
 }
 
+TEST_CASE("engine: with 16-bit integers every row is as near as their rounding allows", "[learned]") {
+  if (!is_supported(InstructionSet::int16)) {
+    WARN("left out: this processor has no kernels for int16");
+    return;
+  }
+  const auto check_near = [](const Architecture& a, const Graph& graph) {
+    const NetworkWeights weights = random_weights(a, 5);
+    LatentTrace ours, theirs;
+    const auto network = pack_network(a, weights, InstructionSet::int16);
+    const FeatureRows output = infer(*network, graph, &ours);
+    CHECK(difference(output, by_definition::infer(a, weights, graph, &theirs)) < 2e-3f);
+    for (std::size_t i = 0; i < ours.nodes.size(); ++i) CHECK(difference(ours.nodes[i], theirs.nodes[i]) < 2e-3f);
+    CHECK(infer_on(2, *network, graph) == output);
+  };
+  check_near(with_size("hood", 16, 15), random_graph(with_size("hood", 16, 15), 50, 20, 150, 1));
+  check_near(with_size("small", 64, 1), random_graph(with_size("small", 64, 1), 101, 0, 250, 3));
+  check_near(with_size("small", 300, 2), random_graph(with_size("small", 300, 2), 30, 0, 80, 3));  // several slices
+  for (const int width : {1, 7, 20, 33})
+    check_near(with_size("fine15", width, 2), random_graph(with_size("fine15", width, 2), 50, 9, 131, 4));
+  const Architecture a = with_size("hood", 16, 9);
+  check_near(a, random_graph(a, 0, 0, 0, 1));
+  check_near(a, random_graph(a, 24, 0, 24, 1));
+}
+
+TEST_CASE("engine: sums of 16-bit integers do not overflow, whatever the inputs", "[learned]") {
+  if (!is_supported(InstructionSet::int16)) return;
+  // Inputs and weights at their largest, of one sign: the largest sum that there can be.
+  Architecture a = with_size("hood", 64, 0);
+  a.layer_norm = false;
+  a.encoders.clear();
+  a.edge_kinds.clear();
+  a.steps.clear();
+  NetworkWeights weights = random_weights(a, 1);
+  for (const WeightArray& array : weight_arrays(a, weights)) std::fill_n(array.data, array.rows * array.columns, 0.7f);
+  Graph graph;
+  graph.cloth_nodes = 3;
+  graph.nodes = FeatureRows::Constant(3, a.node_inputs, 1e3f);
+  CHECK(difference(infer(*pack_network(a, weights, InstructionSet::int16), graph),
+                   by_definition::infer(a, weights, graph)) < 1e-3f);
+}
+
 TEST_CASE("engine: small and empty graphs", "[learned]") {
   const Architecture a = with_size("hood", 16, 9);
   for (const InstructionSet set : all_sets) {
@@ -146,6 +187,8 @@ TEST_CASE("engine: weights that are no numbers give no numbers, and nothing wors
     NetworkWeights weights = random_weights(a, 2);
     weights.steps[1].node.layers[0].weight(3, 5) = bad;
     CHECK(infer(*pack_network(a, weights), graph).array().isNaN().all());
+    if (is_supported(InstructionSet::int16))
+      CHECK(!infer(*pack_network(a, weights, InstructionSet::int16), graph).allFinite());
     for (const WeightArray& array : weight_arrays(a, weights)) std::fill_n(array.data, array.rows * array.columns, bad);
     CHECK(infer(*pack_network(a, weights), graph).array().isNaN().all());
   }
