@@ -103,6 +103,40 @@ void find_classes(const GraphScene& scene, const RestGraph& rest, const GraphSta
   if (!options.attraction_edges) report.cloth_pairs.attraction.clear();
 }
 
+PairQuestion question_of(const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                         const FeatureOptions& options) {
+  const bool ahead = options.future_pinned && !rest.pinned.empty();
+  return {seen.x, seen.mesh, ahead ? state.velocity : Points(), state.body, state.no_cloth_edges, state.no_space_edges};
+}
+
+bool same_rows(const Points& a, const Points& b) { return a.rows() == b.rows() && a == b; }
+
+bool same_question(const PairQuestion& a, const PairQuestion& b) {
+  return same_rows(a.x, b.x) && same_rows(a.mesh, b.mesh) && same_rows(a.ahead, b.ahead) && same_rows(a.body, b.body) &&
+         a.no_cloth_edges == b.no_cloth_edges && a.no_space_edges == b.no_space_edges;
+}
+
+// All pairs, and the body vertices that have one. Those of the last search if nothing that they depend on has changed.
+void find_pairs(const GraphScene& scene, const RestGraph& rest, const GraphState& state, const SeenPositions& seen,
+                const FeatureOptions& options, GraphSearch& search, GraphReport& report) {
+  PairQuestion question = question_of(rest, state, seen, options);
+  if (!same_question(question, search.asked)) {
+    search.asked = {};  // nothing is known if an exception leaves the search half done
+    GraphReport& found = search.found = {};
+    const bool with_body = !options.body_key.empty();
+    if (with_body || options.body_inputs)
+      found.body_pairs = find_body_pairs(scene, options, seen.x, state.body, search.body);
+    std::erase_if(found.body_pairs, [&](const BodyPair& pair) { return scene.cloth.triangles_of(pair.cloth).empty(); });
+    search.body_vertices = active_vertices(scene, found);
+    if (!with_body) search.body_vertices.clear();
+    find_classes(scene, rest, state, seen, options, search, found);
+    if (options.space_edges && !state.no_space_edges)
+      found.space_pairs = find_space_pairs(scene, seen.mesh, options.space, search.space);
+    search.asked = std::move(question);
+  }
+  report = search.found;
+}
+
 // Both ways, the second half the reverse of the first; or one way, from the lower to the higher vertex, as released.
 void fill_space_edges(const std::vector<SpacePair>& pairs, const GraphScene& scene, const GraphState& state,
                       const SeenPositions& seen, const Points& guess, const FeatureOptions& options, EdgeSet& set) {
@@ -144,15 +178,8 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
   const GraphState turned = options.base == OutputBase::carried ? turned_back(in_space) : GraphState();
   const GraphState& state = options.base == OutputBase::carried ? turned : in_space;
   const SeenPositions seen = seen_positions(rest, state, options);
-  const bool with_body = !options.body_key.empty();
-  if (with_body || options.body_inputs)
-    report.body_pairs = find_body_pairs(scene, options, seen.x, state.body, search.body);
-  std::erase_if(report.body_pairs, [&](const BodyPair& pair) { return scene.cloth.triangles_of(pair.cloth).empty(); });
-  graph.body_vertices = active_vertices(scene, report);
-  if (!with_body) graph.body_vertices.clear();
-  find_classes(scene, rest, state, seen, options, search, report);
-  if (options.space_edges && !state.no_space_edges)
-    report.space_pairs = find_space_pairs(scene, seen.mesh, options.space, search.space);
+  find_pairs(scene, rest, state, seen, options, search, report);
+  graph.body_vertices = search.body_vertices;
   fill_node_rows(scene, rest, state, seen, options, tables, graph);
   const Points guess = guess_of(rest, state, seen, options), inertial = inertial_guess(rest, state, seen, options);
   fill_objective_columns(scene, state, seen, guess, inertial, options, report.body_pairs, graph);
@@ -166,7 +193,7 @@ void make_raw_graph(const GraphScene& scene, const RestGraph& rest, const GraphS
       fill_space_edges(report.space_pairs.pairs, scene, state, seen, guess, options, set);
     else if (i < rest.sets.size())
       fill_mesh_edges(rest.sets[i], state, seen, guess, options, set);
-    else if (with_body && i == rest.sets.size())
+    else if (!options.body_key.empty() && i == rest.sets.size())
       fill_body_edges(report.body_pairs, graph.body_vertices, state, seen, options, set);
     else
       fill_cloth_edges(keys[i] == "repulsion_edge" ? report.cloth_pairs.repulsion : report.cloth_pairs.attraction,

@@ -18,11 +18,20 @@ struct GraphReport {
   int cloth_pairs_beyond = 0;  // number left out above the limit, those farthest apart
 };
 
-// Memory between frames of one scene. It saves time and changes nothing.
+// What the pairs of a graph depend on, for one scene and one set of options.
+struct PairQuestion {
+  Points x, mesh, ahead, body;  // as seen; `ahead`: velocities, where pinned vertices look ahead
+  bool no_cloth_edges = false, no_space_edges = false;
+};
+
+// Memory between graphs of one scene and one set of options. It saves time and changes nothing.
 struct GraphSearch {
   BodySearch body;
   ClothSearch cloth, future;
   SpaceSearch space;
+  PairQuestion asked;  // of the last search, whose answer is kept: all passes of a frame ask the same
+  GraphReport found;
+  std::vector<int> body_vertices;
 };
 
 // Fills in the graph that a model with these options sees: topology and raw features. The first columns of each set
