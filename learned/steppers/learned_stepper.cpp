@@ -137,7 +137,8 @@ bool LearnedStepper::settle(GraphState& state, StepReport& report) {
   return true;
 }
 
-StepReport LearnedStepper::take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras&) {
+StepReport LearnedStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
+                                     const StepExtras& extras) {
   restore_standard_arithmetic();
   if (!traits_.accepts(dt))
     throw Error("a learned stepper takes steps of 1/30 s only", "time step " + std::to_string(dt) + " s",
@@ -167,7 +168,7 @@ StepReport LearnedStepper::take_step(const State& from, const Drive& drive, doub
   report.reason = Reason::none;
   StepEnd end = learned_end(scene_, features_, from, drive, state, seen_positions(rest_, state, features_).x, next);
   finish_step(from, drive, dt, std::move(end), to, report);
-  energy_.label(from, drive, to, report);
+  if (!extras.proposal) energy_.label(from, drive, to, report);
   return report;
 }
 

@@ -179,7 +179,7 @@ inline void reject(Reason reason, StepReport& report) {
 struct AddedTerm;  // physics/solve/step_problem.hpp
 
 // What one stepper may hand to another for a step, beside state and drive. Traits say whether a stepper honours it;
-// `stop` is not covered by traits.
+// `stop` and `proposal` are not covered by traits.
 struct StepExtras {
   // A guess of the cloth at the end, n x 3 [m]. The implicit solve starts there unless its own guess is better.
   const Points* guess = nullptr;
@@ -189,6 +189,9 @@ struct StepExtras {
   // Asked in each Newton iteration, untangling pass and impact zone. True: the step is rejected as `stopped`, and `to`
   // must not be used. A stepper without such loops hands it on, or ends soon.
   StopFlag stop = {};
+  // The step is a proposal, of which the caller takes the positions alone and judges them: a stepper may leave out
+  // doubts about it.
+  bool proposal = false;
   bool any() const { return guess || left_alone || added; }  // those that traits cover
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "collision/contact/pair_motion.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/energies/nearest.hpp"
 
@@ -220,8 +221,10 @@ std::vector<char> touching_vertices(ContactStage& stage, const State& from, cons
     return std::min(closest(pair, before).squared_distance, closest(pair, after).squared_distance) < reach * reach;
   };
   std::vector<char> touching(static_cast<std::size_t>(x.rows()), 0);
-  for (const NodePair& pair : stage.path.pairs) {
-    if (!touches(pair)) continue;
+  const PairMotion motion(stage.path.start, before, after);
+  for (std::size_t i = 0; i < stage.path.pairs.size(); ++i) {
+    const NodePair& pair = stage.path.pairs[i];
+    if (!motion.may_come_within(pair, stage.path.gap[i], reach) || !touches(pair)) continue;
     for (const int node : pair.nodes)
       if (node < x.rows()) touching[static_cast<std::size_t>(node)] = 1;
   }

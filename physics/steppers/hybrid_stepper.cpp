@@ -134,7 +134,8 @@ Verdict HybridStepper::audited(Work& work, Verdict free_of_contact) {
 
 // Takes a step of the proposer, without an audit. False if the proposer rejected it.
 bool HybridStepper::ask_proposer(Work& work) {
-  work.report = parts_.proposer->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
+  work.report = parts_.proposer->step(work.from, work.drive, work.dt, work.to,
+                                      {.stop = work.stop, .proposal = asks_for_positions(options_.mode)});
   return work.report.status == StepStatus::accepted;
 }
 
