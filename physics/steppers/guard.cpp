@@ -217,16 +217,19 @@ std::vector<char> touching_vertices(ContactStage& stage, const State& from, cons
   const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(x, obstacles);
   update_pairs(stage.search, reach, before, after, stage.path);
   // The list may have further pairs that depend on earlier steps, which a checkpoint does not store: they are left out.
-  const auto touches = [&](const NodePair& pair) {
-    return std::min(closest(pair, before).squared_distance, closest(pair, after).squared_distance) < reach * reach;
+  const auto is_near = [&](const NodePair& pair, const Points& nodes) {
+    return closest(pair, nodes).squared_distance < reach * reach;
   };
-  std::vector<char> touching(static_cast<std::size_t>(x.rows()), 0);
+  const auto is_cloth = [&](int node) { return node < x.rows(); };
   const PairMotion motion(stage.path.start, before, after);
+  std::vector<char> touching(static_cast<std::size_t>(x.rows()), 0);
   for (std::size_t i = 0; i < stage.path.pairs.size(); ++i) {
     const NodePair& pair = stage.path.pairs[i];
-    if (!motion.may_come_within(pair, stage.path.gap[i], reach) || !touches(pair)) continue;
+    if (!motion.may_come_within(pair, stage.path.gap[i], reach)) continue;
+    const auto is_known = [&](int node) { return !is_cloth(node) || touching[static_cast<std::size_t>(node)]; };
+    if (std::ranges::all_of(pair.nodes, is_known) || (!is_near(pair, before) && !is_near(pair, after))) continue;
     for (const int node : pair.nodes)
-      if (node < x.rows()) touching[static_cast<std::size_t>(node)] = 1;
+      if (is_cloth(node)) touching[static_cast<std::size_t>(node)] = 1;
   }
   return touching;
 }
