@@ -76,7 +76,7 @@ inline Statistics plain_statistics(int columns) {
 inline FeatureTables tables(const FeatureOptions& options) {
   FeatureTables made;
   made.node = plain_statistics(node_widths(options).normalised);
-  made.mesh_edge = made.coarse_edge = plain_statistics(mesh_edge_widths(options).normalised);
+  made.mesh_edge = made.coarse_edge = made.space_edge = plain_statistics(mesh_edge_widths(options).normalised);
   made.world_edge =
       plain_statistics((options.cloth_edges ? cloth_edge_widths(options) : body_edge_widths(options)).normalised);
   made.body_edge = plain_statistics(body_edge_widths(options).normalised);

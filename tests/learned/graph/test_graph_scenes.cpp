@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <functional>
 
 #include "tests/learned/graph_scenes.hpp"
 #include "tests/threads.hpp"
@@ -111,6 +112,36 @@ TEST_CASE("graph: the same bits on one and two threads, with and without what wa
       CHECK(same_graph(one.graph, two.graph));
       if (options.cloth_edges) CHECK(one.report.cloth_pairs.repulsion.size() > 500);
     }
+  }
+}
+
+TEST_CASE("graph: pairs are kept for the next pass, and found anew once anything that they depend on changes",
+          "[graph]") {
+  World moving = world(two_layers(12, 0.01), grid(10, 10, 0.03));
+  for (int v = 0; v < 12; ++v) moving.scene.types[static_cast<std::size_t>(v)] = pinned_vertex;
+  GraphState& s = moving.state;
+  const std::vector<std::pair<std::string, std::function<void()>>> changes{
+      {"nothing", [] {}},
+      {"guess", [&] { s.guess = s.x + Points::Constant(s.x.rows(), 3, 0.01); }},
+      {"a vertex", [&] { s.x(100, 1) += 0.015; }},
+      {"a pinned target", [&] { s.target.row(3).array() += 0.02; }},
+      {"a pinned velocity", [&] { s.velocity.row(4).array() += 0.03; }},
+      {"a vertex of the body", [&] { s.body.row(40).array() += 0.02; }},
+      {"no edges of cloth", [&] { s.no_cloth_edges = true; }},
+      {"no edges in space", [&] { s.no_space_edges = true; }}};
+  for (FeatureOptions options : {hood_features(), contourcraft_features()}) {
+    options.space_edges = true;
+    GraphSearch kept;
+    MadeGraph again;
+    make_again(moving, options, kept, again);
+    const World start = moving;
+    for (const auto& [what, change] : changes) {
+      INFO(what);
+      change();
+      make_again(moving, options, kept, again);
+      CHECK(same_graph(again.graph, made_graph(moving, options).graph));
+    }
+    moving = start;
   }
 }
 

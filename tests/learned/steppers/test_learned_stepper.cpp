@@ -102,6 +102,19 @@ TEST_CASE("A roll-out of HOOD through the stepper has the bits of one by hand", 
   }
 }
 
+TEST_CASE("A proposal has the bits of a step; its energy is left to the stepper that judges it", "[learned]") {
+  const fake::LearnedCase run = above_a_plate(1);
+  const fake::NarrowNetwork network = fake::narrow_network("hood");
+  State step, proposal;
+  const StepReport report =
+      stepper_of(run.scene, network)->step(run.state, run.drives[0], frame_dt, proposal, {.proposal = true});
+  stepper_of(run.scene, network)->step(run.state, run.drives[0], frame_dt, step);
+  CHECK(report.status == StepStatus::accepted);
+  CHECK_FALSE(report.doubts.any());
+  CHECK(fake::same_points(step.x, proposal.x));
+  CHECK(fake::same_points(step.v, proposal.v));
+}
+
 TEST_CASE("The first frame of a roll-out says how many vertices its settling moved out of bodies", "[learned]") {
   const fake::LearnedCase run = above_a_plate(2, -0.005);
   const auto pushed = [&](const std::string& preset, const LearnedOptions& options, int frames) {
