@@ -92,15 +92,16 @@ SELVEDGE_VNNI inline __m512i with_products(__m512i sums, __m512i weights, __m512
 // would put them into memory.
 template <int... R>
 SELVEDGE_VNNI [[gnu::noinline]] void multiply_block(std::integer_sequence<int, R...>, const LayerTile& t,
-                                         const RoundedInputs& rounded, const float* weight, int pairs, int row,
-                                         int column, bool go_on, bool rectify) {
+                                                    const RoundedInputs& rounded, const float* weight, int pairs,
+                                                    int row, int column, bool go_on, bool rectify) {
   __m512i left_sums[] = {(static_cast<void>(R), __m512i{})...}, right_sums[] = {(static_cast<void>(R), __m512i{})...};
   const std::uint32_t* input = rounded.pair[row];
   for (int k = 0; k < pairs; ++k, weight += 2 * lanes, ++input) {
     const __m512i left = _mm512_loadu_si512(weight), right = _mm512_loadu_si512(weight + lanes);
     __m512i pair;
     ((pair = _mm512_set1_epi32(static_cast<int>(input[R * most_pairs])),
-      left_sums[R] = with_products(left_sums[R], left, pair), right_sums[R] = with_products(right_sums[R], right, pair)),
+      left_sums[R] = with_products(left_sums[R], left, pair),
+      right_sums[R] = with_products(right_sums[R], right, pair)),
      ...);
   }
   (store_results(t, left_sums[R], rounded.unit[row + R], row + R, column, go_on, rectify), ...);

@@ -18,12 +18,12 @@ namespace {
 constexpr double dt = 1.0 / 30;
 
 Setup dressed(const Folder& folder, const std::string& weights, const std::string& numbers) {
-  return read_setup(fake::write(
-      folder, numbers + ".yaml",
-      "cloths: [{name: worn, garment: {outfit: summer, form: small}, material: hood}]\n"
-      "obstacles: [{name: person, body: {model: mannequin, clip: walk}}]\n"
-      "run: {stepper: learned, learned: {weights: " +
-          (source_root() / "configs/weights" / weights).string() + ", numbers: " + numbers + "}}\n"));
+  return read_setup(fake::write(folder, numbers + ".yaml",
+                                "cloths: [{name: worn, garment: {outfit: summer, form: small}, material: hood}]\n"
+                                "obstacles: [{name: person, body: {model: mannequin, clip: walk}}]\n"
+                                "run: {stepper: learned, learned: {weights: " +
+                                    (source_root() / "configs/weights" / weights).string() + ", numbers: " + numbers +
+                                    "}}\n"));
 }
 
 double rms(const Points& d) { return std::sqrt(d.rowwise().squaredNorm().mean()); }
