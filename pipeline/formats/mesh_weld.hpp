@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
@@ -48,14 +49,24 @@ void join_at(const std::vector<int>& stands_for, Mesh&, const std::string& name)
 // Joins the same vertices in another mesh with the same vertices and faces.
 void weld_as(const Mesh& welded, Mesh&);
 
+using SkinWeightRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;  // of each vertex, the sum of a row is 1
+
+// Of each vertex of a skinned surface the lowest one at its place, the lowest one near it (seam_places.hpp), and the
+// part of the file that it is in.
+struct SeamPlaces {
+  std::vector<int> same, near, parts;
+};
+
+// Joins borders along edges where exactly two triangles meet: first vertices at one place that move alike, within parts
+// and then everywhere, then those near each other that move alike, and at last those that do not: a head and a trunk
+// that end in one ring are one surface. `joined` has every vertex, also where nothing was joined.
+WeldedSurface closed_where_open(const Surface&, const SeamPlaces&, const SkinWeightRows&);
+
 // Joins vertices of a skinned mesh that lie at one place and move alike, where the mesh is open: pieces that are closed
-// may touch. `parts`: of each vertex the part of the file that it is in. A part is closed by itself before it is joined
-// with others. What is open after that is joined where two edges lie within a fiftieth of the mean edge of each other,
-// and at last where they do not move alike. `weights` are those of the vertices as read and of `joints`, above 0, at
+// may touch. `parts`: as of SeamPlaces; borders are joined as closed_where_open does it. `weights` are those of the vertices as read and of `joints`, above 0, at
 // least one a vertex; their sums need not be 1. Returns the weights of the joined vertices, each of the lowest that it
 // was made of, in rows that sum to 1.
-Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
-                                                        Eigen::Index joints, const std::vector<int>& parts, Mesh&,
-                                                        const std::string& name);
+SkinWeightRows join_alike(const std::vector<Eigen::Triplet<double>>& weights, Eigen::Index joints,
+                          const std::vector<int>& parts, Mesh&, const std::string& name);
 
 }  // namespace selvedge
