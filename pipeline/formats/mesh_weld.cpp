@@ -57,6 +57,34 @@ Joining joining_of(const Points& x, const Surface& surface, double distance) {
   return result;
 }
 
+// The direction from an edge to the third corner of its triangle, at a right angle to the edge.
+Vec3 away(const Points& x, int a, int b, int corner) {
+  const Vec3 along = (row(x, b) - row(x, a)).normalized(), to = row(x, corner) - row(x, a);
+  return (to - along.dot(to) * along).normalized();
+}
+
+// Whether the two faces lie within 60 degrees of each other along most of the edges at which borders were joined.
+bool is_layered(const Points& x, const Triangles& triangles, const std::vector<int>& stands_for) {
+  struct Side {
+    std::pair<int, int> vertices;
+    Vec3 away;
+  };
+  std::map<std::pair<int, int>, std::vector<Side>> sides;
+  for (int t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangles(t, k), b = triangles(t, (k + 1) % 3);
+      sides[std::minmax({stands_for[a], stands_for[b]})].push_back(
+          {std::minmax({a, b}), away(x, a, b, triangles(t, (k + 2) % 3))});
+    }
+  int joined = 0, folded = 0;
+  for (const auto& [edge, faces] : sides) {
+    if (faces.size() != 2 || faces[0].vertices == faces[1].vertices) continue;
+    ++joined;
+    folded += faces[0].away.dot(faces[1].away) > 0.5;
+  }
+  return 2 * folded > joined;
+}
+
 double distance_of(const Points& x, const Surface& surface) {
   return std::max(1e-3 * mean_edge(surface, x), 1e-6 * box_diagonal(x));
 }
@@ -183,11 +211,16 @@ double weld_distance(const Points& x, const Triangles& triangles) { return dista
 
 Welding weldable(const Points& x, const Triangles& triangles) {
   const Surface surface = surface_of(x, triangles);
-  return joining_of(x, surface, distance_of(x, surface)).count;
+  Joining joining = joining_of(x, surface, distance_of(x, surface));
+  if (joining.count.joined > 0) joining.count.layered = is_layered(x, triangles, joining.stands_for);
+  return joining.count;
 }
 
-std::string unwelded_text(int joined, const std::string& cure) {
-  return fmt::format("the seams are not welded: {} joins {}", cure, counted(joined, "vertex", "vertices"));
+std::string unwelded_text(const Welding& welding, const std::string& cure) {
+  const std::string vertices = counted(welding.joined, "vertex", "vertices");
+  if (!welding.layered) return fmt::format("the seams are not welded: {} joins {}", cure, vertices);
+  return fmt::format("layers meet at their borders and are not joined: {} joins {}, if they are sewn there", cure,
+                     vertices);
 }
 
 Welding weld(Mesh& mesh, const std::string& name, std::optional<double> distance) {

@@ -24,6 +24,7 @@ void renumber_look(const std::vector<int>& numbers, Mesh&);
 struct Welding {
   int joined = 0;  // become one with a lower one
   int apart = 0;   // stay: their pieces do not meet along an edge there, or an edge would get more than two triangles
+  bool layered = false;  // along most of the edges the faces of both sides lie over each other: layers, or a fold
 };
 
 // The distance within which `weld` takes vertices for one where none is given: a thousandth of the mean edge, or a
@@ -33,8 +34,9 @@ double weld_distance(const Points& x, const Triangles&);
 // What `weld` without a distance would come to.
 Welding weldable(const Points& x, const Triangles&);
 
-// "the seams are not welded: --weld joins 312 vertices". `cure`: what joins them.
-std::string unwelded_text(int joined, const std::string& cure);
+// "the seams are not welded: --weld joins 312 vertices", and of layers, whose borders may meet on purpose, that it joins
+// them if they are sewn there. `cure`: what joins them.
+std::string unwelded_text(const Welding&, const std::string& cure);
 
 // Joins the borders of pieces along the edges where exactly two triangles meet within a distance (in the mesh's own
 // unit; default: weld_distance). A vertex becomes the lowest of those that it is joined with, and vertices are numbered

@@ -13,6 +13,7 @@
 #include "pipeline/formats/seam_places.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
+#include "pipeline/python/overrides_nanobind.hpp"
 #include "pipeline/python/scene_nanobind.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/massless.hpp"
@@ -28,15 +29,7 @@ using namespace nb::literals;
 
 // A dictionary with the keys of a section of scene files, checked as that is.
 Config section_of(const nb::dict& values, const Section& section, const std::string& where) {
-  std::string text;
-  try {
-    const nb::object plain = nb::module_::import_("operator").attr("methodcaller")("tolist");  // of numpy's numbers
-    text = nb::cast<std::string>(nb::module_::import_("json").attr("dumps")(values, "default"_a = plain));
-  } catch (const nb::python_error& error) {
-    throw Error(std::string("holds what a scene file cannot say: ") + nb::str(error.value()).c_str(), where,
-                "give numbers, texts, lists and dictionaries");
-  }
-  return read_section(text, section, where);
+  return read_section(yaml_of(values, where), section, where);
 }
 
 // What `material` of a scene file may be: a name, or a dictionary.

@@ -147,8 +147,9 @@ void warn_of_seams(const TrajectoryInfo& info, CheckReport& report) {
   for (std::size_t c = 0; c < info.cloth_names.size(); ++c) {
     const int vertex = info.cloth_first_vertex[c];
     const Points rest = info.rest.middleRows(vertex, info.cloth_first_vertex[c + 1] - vertex);
-    if (const int joined = rest.rows() > 0 ? weldable(rest, own_triangles(info, c)).joined : 0; joined > 0)
-      report.warnings.push_back("cloth `" + info.cloth_names[c] + "`: " + unwelded_text(joined, weld_keys_text));
+    const Welding seams = rest.rows() > 0 ? weldable(rest, own_triangles(info, c)) : Welding();
+    if (seams.joined > 0)
+      report.warnings.push_back("cloth `" + info.cloth_names[c] + "`: " + unwelded_text(seams, weld_keys_text));
   }
 }
 
@@ -184,8 +185,8 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
 void check_mesh(const CheckRequest& request, CheckReport& report) {
   const Mesh mesh = read_mesh(request.file);
   report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  if (const int joined = weldable(mesh.x, mesh.triangles).joined; joined > 0)
-    report.warnings.push_back(unwelded_text(joined, weld_keys_text));
+  if (const Welding seams = weldable(mesh.x, mesh.triangles); seams.joined > 0)
+    report.warnings.push_back(unwelded_text(seams, weld_keys_text));
   for (const std::string& fault : mesh_faults(mesh.x, mesh.triangles)) report.warnings.push_back(fault);
   Bodies bodies;
   add_body_files(request, bodies, report);

@@ -151,8 +151,9 @@ void weld_pieces(const DressRequest& request, Mesh& mesh, DressReport& report) {
     report.welded = weld(mesh, request.mesh.string(), request.weld_within).joined;
     return;
   }
-  report.weldable = weldable(mesh.x, mesh.triangles).joined;
-  if (report.weldable > 0) report.warnings.push_back(unwelded_text(report.weldable, "--weld"));
+  const Welding seams = weldable(mesh.x, mesh.triangles);
+  report.weldable = seams.joined;
+  if (seams.joined > 0) report.warnings.push_back(unwelded_text(seams, "--weld"));
 }
 
 }  // namespace
