@@ -34,8 +34,8 @@ double weld_distance(const Points& x, const Triangles&);
 // What `weld` without a distance would come to.
 Welding weldable(const Points& x, const Triangles&);
 
-// "the seams are not welded: --weld joins 312 vertices", and of layers, whose borders may meet on purpose, that it joins
-// them if they are sewn there. `cure`: what joins them.
+// "the seams are not welded: --weld joins 312 vertices", and of layers, whose borders may meet on purpose, that it
+// joins them if they are sewn there. `cure`: what joins them.
 std::string unwelded_text(const Welding&, const std::string& cure);
 
 // Joins the borders of pieces along the edges where exactly two triangles meet within a distance (in the mesh's own
@@ -65,9 +65,9 @@ struct SeamPlaces {
 WeldedSurface closed_where_open(const Surface&, const SeamPlaces&, const SkinWeightRows&);
 
 // Joins vertices of a skinned mesh that lie at one place and move alike, where the mesh is open: pieces that are closed
-// may touch. `parts`: as of SeamPlaces; borders are joined as closed_where_open does it. `weights` are those of the vertices as read and of `joints`, above 0, at
-// least one a vertex; their sums need not be 1. Returns the weights of the joined vertices, each of the lowest that it
-// was made of, in rows that sum to 1.
+// may touch. `parts`: as of SeamPlaces; borders are joined as closed_where_open does it. `weights` are those of the
+// vertices as read and of `joints`, above 0, at least one a vertex; their sums need not be 1. Returns the weights of
+// the joined vertices, each of the lowest that it was made of, in rows that sum to 1.
 SkinWeightRows join_alike(const std::vector<Eigen::Triplet<double>>& weights, Eigen::Index joints,
                           const std::vector<int>& parts, Mesh&, const std::string& name);
 

@@ -36,13 +36,13 @@ def test_texts_and_dicts_say_the_same(scene, overrides):
         (7, "overrides: is no list"),
         ([7], "overrides: holds what is no text"),
         ({"run.frames": object()}, "overrides, run.frames: holds what a scene file cannot say"),
-        ({"run.frame": 7}, "`run.frame` is not a known key"),
+        ({"run.frame": 7}, "`frame` is not a key of `run`"),
     ],
 )
 def test_other_overrides_are_refused_with_the_form(scene, overrides, problem):
     for call in (selvedge.Scene, selvedge.plan):
         with pytest.raises(selvedge.Error, match=problem):
             call(scene, overrides)
-    if "known key" not in problem:
+    if "not a key" not in problem:
         with pytest.raises(selvedge.Error, match=problem):
             selvedge.train(scene, overrides=overrides)

@@ -101,10 +101,10 @@ TEST_CASE("an empty text on the command line is refused with the option's name")
   struct Case {
     const char *arguments, *where;
   };
-  for (const Case& one : {Case{"simulate scene.yaml --out ''", "selvedge: --out: "},
-                          Case{"export run --format ''", "selvedge: --format: "},
-                          Case{"plan scene.yaml --set ''", "selvedge: --set: "}, Case{"check ''", "selvedge: file: "},
-                          Case{"weights info ''", "selvedge: file: "}}) {
+  for (const Case& one :
+       {Case{"simulate scene.yaml --out ''", "selvedge: --out: "},
+        Case{"export run --format ''", "selvedge: --format: "}, Case{"plan scene.yaml --set ''", "selvedge: --set: "},
+        Case{"check ''", "selvedge: file: "}, Case{"weights info ''", "selvedge: file: "}}) {
     const Ended ended = selvedge_program(folder, one.arguments);
     INFO(ended.err);
     CHECK(ended.status == 2);

@@ -93,13 +93,12 @@ TEST_CASE("OBJ: the rest of an o line is one name, each word of a g line is one"
     std::vector<std::string> groups;
   };
   const std::string face = "f 1 2 3\n";
-  for (const Case& c : {Case{"o Left sleeve\n" + face, {"Left sleeve"}},
-                        Case{"o  Left \t sleeve \n" + face, {"Left sleeve"}},
-                        Case{"g cuff left\n" + face, {"cuff", "left"}},
-                        Case{"o Left sleeve\ng cuff hem\n" + face, {"Left sleeve", "cuff", "hem"}},
-                        Case{"o Left sleeve\n" + face + "o Right sleeve\n" + face, {"Left sleeve", "Right sleeve"}},
-                        Case{"o shirt\ng shirt\n" + face, {"shirt"}},
-                        Case{"o Left sleeve\no\n" + face, {}}}) {
+  for (const Case& c :
+       {Case{"o Left sleeve\n" + face, {"Left sleeve"}}, Case{"o  Left \t sleeve \n" + face, {"Left sleeve"}},
+        Case{"g cuff left\n" + face, {"cuff", "left"}},
+        Case{"o Left sleeve\ng cuff hem\n" + face, {"Left sleeve", "cuff", "hem"}},
+        Case{"o Left sleeve\n" + face + "o Right sleeve\n" + face, {"Left sleeve", "Right sleeve"}},
+        Case{"o shirt\ng shirt\n" + face, {"shirt"}}, Case{"o Left sleeve\no\n" + face, {}}}) {
     CAPTURE(c.lines);
     std::vector<std::string> found;
     for (const auto& [name, vertices] : read("a.obj", triangle + c.lines).groups) found.push_back(name);

@@ -30,9 +30,9 @@ TEST_CASE("a folder that cannot be made is named with what helps") {
   struct Case {
     std::string path, where, cure;
   };
-  for (const Case& one : {Case{"", "the folder to write to", "`.` is the present folder"},
-                          Case{file, file, "a file is where a folder"},
-                          Case{file + "/below", file + "/below", "a file is where a folder"}}) {
+  for (const Case& one :
+       {Case{"", "the folder to write to", "`.` is the present folder"}, Case{file, file, "a file is where a folder"},
+        Case{file + "/below", file + "/below", "a file is where a folder"}}) {
     INFO(one.path);
     try {
       make_folder(one.path);

@@ -17,9 +17,9 @@ TEST_CASE("paths of a scene that is given by a link begin at the link", "[setup_
   struct Case {
     const char *scene, *box, *problem;  // empty: none
   };
-  for (const Case& one : {Case{"real", "real", ""}, Case{"linked", "linked", ""},
-                          Case{"real", "linked", "relative to the scene file"},
-                          Case{"linked", "real", "box.obj is there: give `folder: "}}) {
+  for (const Case& one :
+       {Case{"real", "real", ""}, Case{"linked", "linked", ""}, Case{"real", "linked", "relative to the scene file"},
+        Case{"linked", "real", "box.obj is there: give `folder: "}}) {
     INFO(one.scene << " " << one.box);
     fake::write(folder, std::string(one.box) + "/box.obj", fake::loose_box(0));
     std::string said;
