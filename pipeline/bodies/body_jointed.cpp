@@ -76,8 +76,7 @@ void check_inside(const BodyModel& body, const Surface& surface, const Points& j
 void set_weights(const Points& joints, const Config& given, BodyModel& body) {
   const auto n = static_cast<int>(body.skin.rest.rows());
   Surface surface = make_surface(n, body.skin.triangles);
-  std::optional<WeldedSurface> welded =
-      welded_surface(surface, seam_places({&body.skin.rest, 1}, body.skin.triangles));
+  std::optional<WeldedSurface> welded = welded_surface(surface, seam_places({&body.skin.rest, 1}, body.skin.triangles));
   if (welded) surface = std::move(welded->surface);
   check_inside(body, surface, joints, given);
   body.skin.weights = bone_weights(surface, body.skin.rest, joints, body.parents);

@@ -47,7 +47,8 @@ std::vector<int> seam_places(const BodyModel& body) {
   if (std::ranges::count(on_border(surface), 1) == 0) return alike;
   SeamPlaces seams{same_places(skin.rest), {}, std::vector<int>(alike.size(), -1)};
   seams.near = near_places(skin.rest, surface, seams.same);
-  for (const auto& [places, most] : {std::pair(&seams.same, same_weight), {&seams.near, seam_width(skin.rest, surface)}})
+  for (const auto& [places, most] :
+       {std::pair(&seams.same, same_weight), {&seams.near, seam_width(skin.rest, surface)}})
     part_places([&](int v, int w) { return same_directions(skin, v, w, most); }, *places);
   for (std::size_t m = body.meshes.size(); m-- > 0;)  // the first mesh with a vertex counts
     for (const int v : body.meshes[m].second) seams.parts[v] = static_cast<int>(m);

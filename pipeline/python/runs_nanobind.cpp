@@ -33,8 +33,8 @@ using Path = std::filesystem::path;
 nb::object object_of_json(const std::string& text) { return nb::module_::import_("json").attr("loads")(text); }
 
 nb::object plan_of(const Path& file, const nb::object& overrides, const nb::dict& kinds) {
-  return object_of_json(
-      plan_json(read_setup(file, overrides_of(overrides), kinds_with(kinds, std::make_shared<HeldObjects::element_type>()))));
+  return object_of_json(plan_json(
+      read_setup(file, overrides_of(overrides), kinds_with(kinds, std::make_shared<HeldObjects::element_type>()))));
 }
 
 nb::object fit_of(const Path& run, const std::optional<Path>& scene, const std::string& body,
@@ -135,7 +135,8 @@ void bind_runs(nb::module_& module) {
              "scene: the file that the run was made of (config.yaml beside it); body: an obstacle's name (the first "
              "body); regions: a file of the body's vertices by name (its joints); frame: the last; reach: what is "
              "nearer touches the skin [m] (twice the contact thickness); out: a page to write.");
-  module.def("dataset", &dataset_of, "config"_a, "out"_a = nb::none(), "overrides"_a = nb::tuple(), "log"_a.none() = print,
+  module.def("dataset", &dataset_of, "config"_a, "out"_a = nb::none(), "overrides"_a = nb::tuple(),
+             "log"_a.none() = print,
              "Makes drapes at rest to train a network on, as the command does, in the folder out (out/data/NAME). log: "
              "called with a line for each path; None: silent. Ctrl-C keeps the paths that are done; the same call goes "
              "on. Returns what `selvedge dataset --json` prints, a dict.");

@@ -164,7 +164,8 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
   if (!report.closed) report.warnings.push_back("the trajectory was not closed: its writer was stopped or is at work");
   warn_of_seams(info, report);
   Bodies bodies;
-  for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(make_surface(body.vertex_count, body.triangles), Points());
+  for (const TrajectoryInfo::Body& body : info.obstacles)
+    bodies.add(make_surface(body.vertex_count, body.triangles), Points());
   add_body_files(request, bodies, report);
   const auto volume = volume_check(request, scene.surface, info, report);
   int last_cut = -1;
