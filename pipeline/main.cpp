@@ -22,6 +22,14 @@ using namespace selvedge;
 
 namespace {
 
+// A script whose variable is not set gives an empty text, which stands for nothing.
+void refuse_empty(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (const std::vector<std::string>& given = option->results(); std::ranges::find(given, "") != given.end())
+      throw Error("is given an empty text", option->get_name(),
+                  option->get_positional() ? "name what it stands for" : "give a value, or leave the option out");
+}
+
 // Adds all commands; `chosen` becomes the one that is parsed.
 void add_commands(CLI::App& app, std::function<int()>& chosen) {
   for (const Command& row : commands) {
@@ -39,7 +47,10 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
     const auto json = std::make_shared<bool>(false);
     command.add_flag("--json", *json,
                      "print one JSON object to standard output, and text for people to standard error");
-    command.callback([&chosen, json, run] { chosen = [=] { return run(*json); }; });
+    command.callback([&chosen, &command, json, run] {
+      refuse_empty(command);
+      chosen = [=] { return run(*json); };
+    });
   }
 }
 

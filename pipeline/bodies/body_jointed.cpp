@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "collision/exact/inside.hpp"
-#include "collision/geometry/same_places.hpp"
 #include "collision/geometry/welded_surface.hpp"
 #include "pipeline/bodies/body_part.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
@@ -12,6 +11,7 @@
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_tables.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/seam_places.hpp"
 
 namespace selvedge {
 namespace {
@@ -76,7 +76,7 @@ void check_inside(const BodyModel& body, const Surface& surface, const Points& j
 void set_weights(const Points& joints, const Config& given, BodyModel& body) {
   const auto n = static_cast<int>(body.skin.rest.rows());
   Surface surface = make_surface(n, body.skin.triangles);
-  std::optional<WeldedSurface> welded = welded_surface(surface, same_places(body.skin.rest));
+  std::optional<WeldedSurface> welded = welded_surface(surface, seam_places({&body.skin.rest, 1}, body.skin.triangles));
   if (welded) surface = std::move(welded->surface);
   check_inside(body, surface, joints, given);
   body.skin.weights = bone_weights(surface, body.skin.rest, joints, body.parents);

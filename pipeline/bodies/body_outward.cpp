@@ -1,13 +1,13 @@
 #include "pipeline/bodies/body_outward.hpp"
 
-#include "collision/geometry/same_places.hpp"
+#include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
 
 void turn_outward(const std::string& name, BodyModel& body, std::vector<std::string>& warnings) {
   const bool solid =
-      turn_outward(name, body.meshes, {&body.skin.rest, 1}, same_places(body.skin.rest), body.skin.triangles, warnings);
+      turn_outward(name, body.meshes, {&body.skin.rest, 1}, seam_places(body), body.skin.triangles, warnings);
   if (!solid)
     warnings.push_back(name +
                        ": no part of the body is closed, so that nothing is inside of it and cloth that gets there is "
@@ -15,7 +15,7 @@ void turn_outward(const std::string& name, BodyModel& body, std::vector<std::str
 }
 
 OwnCrossings own_crossings(const BodyModel& body, const Eigen::VectorXd& shape) {
-  return own_crossings(body.meshes, shaped(body.skin, shape), body.skin.triangles, same_places(body.skin.rest));
+  return own_crossings(body.meshes, shaped(body.skin, shape), body.skin.triangles, seam_places(body));
 }
 
 }  // namespace selvedge

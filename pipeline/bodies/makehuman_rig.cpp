@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "pipeline/host/json_text.hpp"
+#include "pipeline/host/json_file.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -52,18 +52,7 @@ struct Value {
   }
 };
 
-Json parsed(const std::filesystem::path& path) {
-  const std::string text = read_text_file(path, "JSON");
-  try {
-    return parse_json(text);
-  } catch (const Json::parse_error& problem) {
-    const std::size_t end = std::min(problem.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-    throw Error("is no JSON", fmt::format("{}:{}", path.string(), line), "repair the line or what stands before it");
-  } catch (const Json::out_of_range&) {
-    throw Error("has a number that is too large", path.string(), "repair the file where it was made");
-  }
-}
+Json parsed(const std::filesystem::path& path) { return json_of_file(read_text_file(path, "JSON"), path.string()); }
 
 std::vector<int> vertices_of(const Value& list) {
   std::vector<int> vertices(list.list_size());

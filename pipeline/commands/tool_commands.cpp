@@ -5,6 +5,7 @@
 
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
 #include "pipeline/commands/number_checks.hpp"
@@ -245,7 +246,17 @@ RunCommand export_command(CLI::App& command) {
       if (done == 1) progress.begin(0, all);
       progress.frame(done);
     };
-    const std::vector<std::filesystem::path> written = export_trajectory(shown);
+    std::vector<std::filesystem::path> written;
+    const InterruptWatch watch;
+    const StopFlag stop = InterruptWatch::interrupted;
+    try {
+      const StopScope scope(stop);
+      written = export_trajectory(shown);
+    } catch (const Stopped&) {
+      progress.end();
+      return end_command(json, "stopped; the files that are whole are in " + request->out.string() + "\n",
+                         json_text({{"finished", false}}), false);
+    }
     progress.end();
     Json list = Json::array();
     for (const std::filesystem::path& file : written) list.push_back(file.string());

@@ -43,7 +43,8 @@ Key weld_within_key() {
 
 const Section& mesh_section() {
   static const Section table{"mesh",
-                             "An OBJ or PLY file. The names of its `o` and `g` lines become vertex groups.",
+                             "An OBJ or PLY file. The names of its `o` and `g` lines become vertex groups. The rest "
+                             "of an `o` line is one name, and each word of a `g` line is one.",
                              {needed(path("file", "The OBJ or PLY file.")), unit_key(), weld_key(), weld_within_key()},
                              "file"};
   return table;

@@ -52,7 +52,6 @@ struct Parser {
   std::vector<Face> faces;
   std::map<std::string, int> unknown;  // unknown first words of lines, and how often
   std::vector<std::string> open_groups;
-  std::string object;
   std::vector<std::pair<std::string, std::vector<int>>> groups;
   std::map<std::string, std::size_t> group_index;
   LookPart part;
@@ -155,6 +154,19 @@ std::vector<std::string_view> obj_words(std::string_view line) {
   return names ? words : split_words(line.substr(0, line.find('#')));
 }
 
+// The rest of an `o` line is one name, since there is one object at a time; each word of a `g` line is a name.
+void read_part(Parser& p, const std::vector<std::string_view>& words) {
+  const bool whole = words[0] == "o";
+  const std::string said = joined_from(words, 1);
+  (whole ? p.part.object : p.part.groups) = said;
+  if (whole) p.part.groups.clear();
+  std::vector<std::string>& open = p.open_groups;
+  open.clear();
+  if (!p.part.object.empty()) open.push_back(p.part.object);
+  for (std::size_t k = 1; k < words.size() && !whole; ++k)
+    if (std::find(open.begin(), open.end(), words[k]) == open.end()) open.emplace_back(words[k]);
+}
+
 void read_line(Parser& p, std::string_view text) {
   const std::vector<std::string_view> words = obj_words(text);
   if (words.empty()) return;
@@ -167,14 +179,7 @@ void read_line(Parser& p, std::string_view text) {
   } else if (words[0] == "f") {
     read_face(p, words);
   } else if (words[0] == "o" || words[0] == "g") {
-    std::vector<std::string>& open = p.open_groups;
-    if (words[0] == "o") p.object = words.size() > 1 ? std::string(words[1]) : "";
-    open.clear();
-    if (!p.object.empty()) open.push_back(p.object);
-    for (std::size_t k = 1; k < words.size(); ++k)
-      if (std::find(open.begin(), open.end(), words[k]) == open.end()) open.emplace_back(words[k]);
-    (words[0] == "o" ? p.part.object : p.part.groups) = joined_from(words, 1);
-    if (words[0] == "o") p.part.groups.clear();
+    read_part(p, words);
   } else if (words[0] == "s") {
     p.part.smoothing = joined_from(words, 1);
   } else if (words[0] == "usemtl") {

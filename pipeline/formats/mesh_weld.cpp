@@ -11,7 +11,6 @@
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
-#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/seam_places.hpp"
 
@@ -58,6 +57,34 @@ Joining joining_of(const Points& x, const Surface& surface, double distance) {
   return result;
 }
 
+// The direction from an edge to the third corner of its triangle, at a right angle to the edge.
+Vec3 away(const Points& x, int a, int b, int corner) {
+  const Vec3 along = (row(x, b) - row(x, a)).normalized(), to = row(x, corner) - row(x, a);
+  return (to - along.dot(to) * along).normalized();
+}
+
+// Whether the two faces lie within 60 degrees of each other along most of the edges at which borders were joined.
+bool is_layered(const Points& x, const Triangles& triangles, const std::vector<int>& stands_for) {
+  struct Side {
+    std::pair<int, int> vertices;
+    Vec3 away;
+  };
+  std::map<std::pair<int, int>, std::vector<Side>> sides;
+  for (int t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangles(t, k), b = triangles(t, (k + 1) % 3);
+      sides[std::minmax({stands_for[a], stands_for[b]})].push_back(
+          {std::minmax({a, b}), away(x, a, b, triangles(t, (k + 2) % 3))});
+    }
+  int joined = 0, folded = 0;
+  for (const auto& [edge, faces] : sides) {
+    if (faces.size() != 2 || faces[0].vertices == faces[1].vertices) continue;
+    ++joined;
+    folded += faces[0].away.dot(faces[1].away) > 0.5;
+  }
+  return 2 * folded > joined;
+}
+
 double distance_of(const Points& x, const Surface& surface) {
   return std::max(1e-3 * mean_edge(surface, x), 1e-6 * box_diagonal(x));
 }
@@ -66,7 +93,7 @@ Surface surface_of(const Points& x, const Triangles& triangles) {
   return make_surface(static_cast<int>(x.rows()), triangles);
 }
 
-using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Weights = SkinWeightRows;
 
 // Parts places so that the weights of all vertices at one are nearly the same. Parts of a body that touch have other
 // weights there and move apart; seams of textures have the same, but for rounding.
@@ -80,6 +107,12 @@ std::vector<int> alike_places(std::vector<int> places, const Weights& weights) {
       },
       places);
   return places;
+}
+
+std::vector<int> roots(DisjointSets& sets, int count) {
+  std::vector<int> lowest;
+  for (int v = 0; v < count; ++v) lowest.push_back(sets.root(v));
+  return lowest;
 }
 
 // The triangles whose corners are three vertices.
@@ -110,33 +143,15 @@ std::vector<char> copied_pieces(const Surface& surface, const std::vector<int>& 
   return copied;
 }
 
-// Joins borders along edges where exactly two triangles meet: first within parts, then everywhere, then where vertices
-// are near each other, and at last also where they do not move alike: a head and a trunk that end in one ring are one
-// surface. What is open after that, in no triangle or a copy is joined by its place. Returns of each vertex the lowest
-// that it is joined with.
+// Of each vertex the lowest that it is joined with: at borders by closed_where_open, and what is open after that, in no
+// triangle or a copy by its place.
 std::vector<int> joined_where_open(const Points& x, const Surface& as_read, const Weights& weights,
                                    const std::vector<int>& parts) {
-  const std::vector<int> same = same_places(x), nearly = near_places(x, as_read, same),
-                         places = alike_places(same, weights);
-  const std::vector<int> one_part(parts.size(), 0);
-  struct Pass {
-    std::vector<int> places;
-    const std::vector<int>& parts;
-  };
+  const std::vector<int> same = same_places(x), places = alike_places(same, weights);
+  const WeldedSurface closed = closed_where_open(as_read, {same, near_places(x, as_read, same), parts}, weights);
+  const Surface& surface = closed.surface;
   DisjointSets sets(as_read.vertex_count);
-  Surface surface = as_read;
-  for (const Pass& pass :
-       {Pass{places, parts}, {places, one_part}, {alike_places(nearly, weights), one_part}, {nearly, one_part}}) {
-    const std::vector<char> border = on_border(surface);
-    std::map<std::pair<int, int>, int> first;
-    std::vector<int> open(border.size());
-    for (int v = 0; v < surface.vertex_count; ++v)
-      open[v] = border[v] ? first.try_emplace({pass.places[v], pass.parts[v]}, v).first->second : v;
-    std::optional<WeldedSurface> welded = welded_surface(surface, open);
-    if (!welded) continue;
-    for (int v = 0; v < surface.vertex_count; ++v) sets.join(v, welded->joined[v]);
-    surface = std::move(welded->surface);
-  }
+  for (int v = 0; v < as_read.vertex_count; ++v) sets.join(v, closed.joined[v]);
   const std::vector<char> border = on_border(surface), copied = copied_pieces(surface, places);
   std::map<int, int> used, open;  // of a place the lowest vertex of a triangle, and that at a border
   const auto is_copy = [&](int v) { return surface.vertex_owner[v] >= 0 && copied[surface.component[v]]; };
@@ -148,12 +163,35 @@ std::vector<int> joined_where_open(const Points& x, const Surface& as_read, cons
     if (border[v]) sets.join(v, open[places[v]]);
     if (as_read.vertex_owner[v] < 0 || is_copy(v)) sets.join(v, used.contains(places[v]) ? used[places[v]] : places[v]);
   }
-  std::vector<int> joined;
-  for (int v = 0; v < surface.vertex_count; ++v) joined.push_back(sets.root(v));
-  return joined;
+  return roots(sets, surface.vertex_count);
 }
 
 }  // namespace
+
+WeldedSurface closed_where_open(const Surface& as_read, const SeamPlaces& seams, const SkinWeightRows& weights) {
+  const std::vector<int> places = alike_places(seams.same, weights), one_part(seams.parts.size(), 0);
+  struct Pass {
+    std::vector<int> places;
+    const std::vector<int>& parts;
+  };
+  DisjointSets sets(as_read.vertex_count);
+  Surface surface = as_read;
+  for (const Pass& pass : {Pass{places, seams.parts},
+                           {places, one_part},
+                           {alike_places(seams.near, weights), one_part},
+                           {seams.near, one_part}}) {
+    const std::vector<char> border = on_border(surface);
+    std::map<std::pair<int, int>, int> first;
+    std::vector<int> open(border.size());
+    for (int v = 0; v < surface.vertex_count; ++v)
+      open[v] = border[v] ? first.try_emplace({pass.places[v], pass.parts[v]}, v).first->second : v;
+    std::optional<WeldedSurface> welded = welded_surface(surface, open);
+    if (!welded) continue;
+    for (int v = 0; v < surface.vertex_count; ++v) sets.join(v, welded->joined[v]);
+    surface = std::move(welded->surface);
+  }
+  return {std::move(surface), roots(sets, as_read.vertex_count)};
+}
 
 int coincident_vertices(const Points& x) { return lower_elsewhere(same_places(x)); }
 
@@ -173,11 +211,16 @@ double weld_distance(const Points& x, const Triangles& triangles) { return dista
 
 Welding weldable(const Points& x, const Triangles& triangles) {
   const Surface surface = surface_of(x, triangles);
-  return joining_of(x, surface, distance_of(x, surface)).count;
+  Joining joining = joining_of(x, surface, distance_of(x, surface));
+  if (joining.count.joined > 0) joining.count.layered = is_layered(x, triangles, joining.stands_for);
+  return joining.count;
 }
 
-std::string unwelded_text(int joined, const std::string& cure) {
-  return fmt::format("the seams are not welded: {} joins {}", cure, counted(joined, "vertex", "vertices"));
+std::string unwelded_text(const Welding& welding, const std::string& cure) {
+  const std::string vertices = counted(welding.joined, "vertex", "vertices");
+  if (!welding.layered) return fmt::format("the seams are not welded: {} joins {}", cure, vertices);
+  return fmt::format("layers meet at their borders and are not joined: {} joins {}, if they are sewn there", cure,
+                     vertices);
 }
 
 Welding weld(Mesh& mesh, const std::string& name, std::optional<double> distance) {
@@ -222,9 +265,8 @@ void weld_as(const Mesh& welded, Mesh& mesh) {
   mesh.triangles = welded.triangles;
 }
 
-Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
-                                                        Eigen::Index joints, const std::vector<int>& parts, Mesh& mesh,
-                                                        const std::string& name) {
+SkinWeightRows join_alike(const std::vector<Eigen::Triplet<double>>& weights, Eigen::Index joints,
+                          const std::vector<int>& parts, Mesh& mesh, const std::string& name) {
   Weights as_read(mesh.x.rows(), joints);
   as_read.setFromTriplets(weights.begin(), weights.end());
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_read.rows());

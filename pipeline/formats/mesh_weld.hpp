@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/formats/mesh.hpp"
 
 namespace selvedge {
@@ -23,6 +24,7 @@ void renumber_look(const std::vector<int>& numbers, Mesh&);
 struct Welding {
   int joined = 0;  // become one with a lower one
   int apart = 0;   // stay: their pieces do not meet along an edge there, or an edge would get more than two triangles
+  bool layered = false;  // along most of the edges the faces of both sides lie over each other: layers, or a fold
 };
 
 // The distance within which `weld` takes vertices for one where none is given: a thousandth of the mean edge, or a
@@ -32,8 +34,9 @@ double weld_distance(const Points& x, const Triangles&);
 // What `weld` without a distance would come to.
 Welding weldable(const Points& x, const Triangles&);
 
-// "the seams are not welded: --weld joins 312 vertices". `cure`: what joins them.
-std::string unwelded_text(int joined, const std::string& cure);
+// "the seams are not welded: --weld joins 312 vertices", and of layers, whose borders may meet on purpose, that it
+// joins them if they are sewn there. `cure`: what joins them.
+std::string unwelded_text(const Welding&, const std::string& cure);
 
 // Joins the borders of pieces along the edges where exactly two triangles meet within a distance (in the mesh's own
 // unit; default: weld_distance). A vertex becomes the lowest of those that it is joined with, and vertices are numbered
@@ -48,14 +51,24 @@ void join_at(const std::vector<int>& stands_for, Mesh&, const std::string& name)
 // Joins the same vertices in another mesh with the same vertices and faces.
 void weld_as(const Mesh& welded, Mesh&);
 
+using SkinWeightRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;  // of each vertex, the sum of a row is 1
+
+// Of each vertex of a skinned surface the lowest one at its place, the lowest one near it (seam_places.hpp), and the
+// part of the file that it is in.
+struct SeamPlaces {
+  std::vector<int> same, near, parts;
+};
+
+// Joins borders along edges where exactly two triangles meet: first vertices at one place that move alike, within parts
+// and then everywhere, then those near each other that move alike, and at last those that do not: a head and a trunk
+// that end in one ring are one surface. `joined` has every vertex, also where nothing was joined.
+WeldedSurface closed_where_open(const Surface&, const SeamPlaces&, const SkinWeightRows&);
+
 // Joins vertices of a skinned mesh that lie at one place and move alike, where the mesh is open: pieces that are closed
-// may touch. `parts`: of each vertex the part of the file that it is in. A part is closed by itself before it is joined
-// with others. What is open after that is joined where two edges lie within a fiftieth of the mean edge of each other,
-// and at last where they do not move alike. `weights` are those of the vertices as read and of `joints`, above 0, at
-// least one a vertex; their sums need not be 1. Returns the weights of the joined vertices, each of the lowest that it
-// was made of, in rows that sum to 1.
-Eigen::SparseMatrix<double, Eigen::RowMajor> join_alike(const std::vector<Eigen::Triplet<double>>& weights,
-                                                        Eigen::Index joints, const std::vector<int>& parts, Mesh&,
-                                                        const std::string& name);
+// may touch. `parts`: as of SeamPlaces; borders are joined as closed_where_open does it. `weights` are those of the
+// vertices as read and of `joints`, above 0, at least one a vertex; their sums need not be 1. Returns the weights of
+// the joined vertices, each of the lowest that it was made of, in rows that sum to 1.
+SkinWeightRows join_alike(const std::vector<Eigen::Triplet<double>>& weights, Eigen::Index joints,
+                          const std::vector<int>& parts, Mesh&, const std::string& name);
 
 }  // namespace selvedge

@@ -6,14 +6,9 @@
 
 #include "collision/geometry/disjoint_sets.hpp"
 #include "collision/geometry/same_places.hpp"
-#include "collision/geometry/welded_surface.hpp"
 
 namespace selvedge {
-namespace {
-
 double seam_width(const Points& x, const Surface& surface) { return 0.02 * mean_edge(surface, x); }
-
-}  // namespace
 
 std::vector<char> on_border(const Surface& surface) {
   std::vector<char> border(static_cast<std::size_t>(surface.vertex_count), 0);
@@ -54,6 +49,15 @@ std::vector<int> seam_places(std::span<const Points> frames, const Triangles& tr
   std::vector<int> joined;
   for (int v = 0; v < surface.vertex_count; ++v) joined.push_back(sets.root(v));
   return joined;
+}
+
+WeldedSurface closed_surface(std::span<Points> frames, const Triangles& triangles) {
+  Surface surface = make_surface(static_cast<int>(frames.front().rows()), triangles);
+  std::optional<WeldedSurface> welded =
+      welded_surface(surface, seam_places(std::span<const Points>(frames), triangles));
+  if (!welded) return {std::move(surface), {}};
+  for (Points& x : frames) hold_together(welded->joined, x);
+  return *std::move(welded);
 }
 
 }  // namespace selvedge

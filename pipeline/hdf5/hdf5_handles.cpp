@@ -9,6 +9,7 @@
 #include "collision/geometry/require_file.hpp"
 #include "learned/network/nowhere_hdf5.hpp"
 #include "pipeline/host/bounds.hpp"
+#include "pipeline/host/cure_to_write.hpp"
 
 namespace selvedge::h5 {
 namespace {
@@ -29,13 +30,12 @@ std::string reason_of_failure() {
 }
 
 std::string cure_for(const std::string& reason) {
-  if (reason.find("No space") != std::string::npos || reason.find("File too large") != std::string::npos ||
-      reason.find("quota") != std::string::npos)
-    return "free some space or choose another folder; what was written is readable up to the last full frame";
   if (reason.find("No such file") != std::string::npos) return "check the path";
   if (reason.find("signature not found") != std::string::npos)
     return "this is no HDF5 file, or one that was cut off at its beginning: name a .h5 file of this program";
   if (reason.find("truncated file") != std::string::npos) return "the end of the file is missing: copy it again";
+  if (const std::string cure = cure_to_write(reason); cure != write_cure)
+    return cure + "; what was written is readable up to the last full frame";
   if (reason.find("ermission") != std::string::npos) return "check who may write there, or choose another folder";
   return "check that the file is one of this program and that its disk works";
 }
@@ -139,7 +139,10 @@ File File::create(const std::filesystem::path& path, bool followed) {
   // In the latest format the root group has its time, whatever its properties say (HDF5 1.10).
   const Handle access = file_access(followed ? H5F_LIBVER_LATEST : H5F_LIBVER_EARLIEST), creation = file_creation();
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation.id(), access.id());
-  if (id < 0) throw Error("cannot write (" + reason_of_failure() + ")", path_in_place(path).string(), write_cure);
+  if (id < 0) {
+    const std::string reason = reason_of_failure();
+    throw Error("cannot write (" + reason + ")", path_in_place(path).string(), cure_to_write(reason));
+  }
   return {path, Handle(id, H5Fclose)};
 }
 
@@ -154,7 +157,7 @@ File File::open(const std::filesystem::path& path) {
 void File::move_to(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::rename(path_, path, error);
-  if (error) throw Error("cannot write (" + error.message() + ")", path.string(), write_cure);
+  if (error) throw Error("cannot write (" + error.message() + ")", path.string(), cure_to_write(error.message()));
   path_ = path;
 }
 

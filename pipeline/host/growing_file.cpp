@@ -5,6 +5,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/path_beside.hpp"
+#include "pipeline/host/cure_to_write.hpp"
 
 namespace selvedge {
 
@@ -29,7 +30,7 @@ void GrowingFile::keep() {
   if (stream_ && std::fclose(stream_.release()) != 0 && failed_ == 0) failed_ = errno;
   std::error_code error(failed_, std::generic_category());
   if (!error) std::filesystem::rename(beside_, path_, error);
-  if (error) throw Error("cannot write (" + error.message() + ")", path_.string(), write_cure);
+  if (error) throw Error("cannot write (" + error.message() + ")", path_.string(), cure_to_write(error.message()));
   kept_ = true;
 }
 

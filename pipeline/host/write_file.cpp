@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "collision/geometry/error.hpp"
+#include "pipeline/host/cure_to_write.hpp"
 #include "pipeline/host/growing_file.hpp"
 
 namespace selvedge {
@@ -14,9 +15,13 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
 }
 
 void make_folder(const std::filesystem::path& path, const std::string& cure) {
+  if (path.empty()) throw Error("has an empty name", "the folder to write to", "name it; `.` is the present folder");
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw Error("cannot make this folder (" + error.message() + ")", path.string(), cure);
+  if (!error) return;
+  const std::string of_reason = cure_to_write(error.message());
+  throw Error("cannot make this folder (" + error.message() + ")", path.string(),
+              of_reason == write_cure ? cure : of_reason);
 }
 
 void remove_file(const std::filesystem::path& path) {

@@ -4,7 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/factorisations.hpp"
-#include "pipeline/host/json_text.hpp"
+#include "pipeline/host/json_file.hpp"
 #include "pipeline/host/read_file.hpp"
 
 namespace selvedge {
@@ -53,8 +53,8 @@ Vec3 longest_direction(const Points& x, const std::vector<int>& vertices) {
 }
 
 Json parsed_regions(const std::filesystem::path& file) {
-  const auto all = parse_json_or_discard(read_text_file(file, "segmentation"));
-  if (all.is_discarded() || !all.is_object() || all.empty())
+  const Json all = json_of_file(read_text_file(file, "segmentation"), file.string());
+  if (!all.is_object() || all.empty())
     throw Error("is no segmentation of a body", file.string(), "give a JSON object of lists of vertices by name");
   return all;
 }

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "collision/geometry/stopwatch.hpp"
-#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/bodies/body_hdf5.hpp"
 #include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
@@ -193,9 +191,9 @@ Performance figure_of(BodyModel body, const std::string& what) {
   who.body = std::move(body);
   turn_outward(what, who.body, who.warnings);
   warn_of_axis(what, who.body, who.warnings);
-  who.surface = make_surface(static_cast<int>(who.body.skin.rest.rows()), who.body.skin.triangles);
-  if (std::optional<WeldedSurface> welded = welded_surface(who.surface, same_places(who.body.skin)))
-    std::tie(who.surface, who.joined) = std::pair(std::move(welded->surface), std::move(welded->joined));
+  WeldedSurface closed = closed_surface(who.body);
+  who.surface = std::move(closed.surface);
+  who.joined = std::move(closed.joined);
   return who;
 }
 

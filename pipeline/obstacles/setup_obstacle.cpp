@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/same_places.hpp"
-#include "collision/geometry/welded_surface.hpp"
 #include "pipeline/formats/seam_places.hpp"
 #include "pipeline/host/bounds.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
@@ -112,12 +111,7 @@ ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::
   const Motion motion = read_motion(section["motion"], body->frames[0]);
   ObstaclePart part;
   part.obstacle.name = obstacle_name(section, index);
-  part.obstacle.surface = make_surface(static_cast<int>(body->frames[0].rows()), body->triangles);
-  if (std::optional<WeldedSurface> welded =
-          welded_surface(part.obstacle.surface, seam_places(body->frames, body->triangles))) {
-    for (Points& frame : body->frames) hold_together(welded->joined, frame);
-    part.obstacle.surface = std::move(welded->surface);
-  }
+  part.obstacle.surface = closed_surface(body->frames, body->triangles).surface;
   part.obstacle.moving = body->frames.size() > 1 || !is_still(motion);
   if (body->frames.size() > 1) part.ends = body->times.last();
   part.at = [body, motion](double time) { return moved(motion, sequence_at(*body, time), time); };

@@ -81,6 +81,21 @@ fs::path expanded_path(const Config& at, const std::string& text, const fs::path
   return path.is_absolute() ? path : folder / path;
 }
 
+namespace {
+
+// What helps where paths of a scene file lead nowhere.
+std::string scene_cure(const Config& at, const std::string& text) {
+  std::error_code ignored;
+  const fs::path scene = at.where.substr(0, at.where.rfind(':'));  // without the line
+  const std::string plain = "paths are relative to the scene file";
+  if (!fs::is_symlink(scene, ignored)) return plain;
+  const fs::path place = fs::canonical(scene, ignored).parent_path(), there = expanded_path(at, text, place);
+  return plain + ", which is a link here" +
+         (fs::exists(there, ignored) ? "; " + there.string() + " is there: give `folder: " + place.string() + "`" : "");
+}
+
+}  // namespace
+
 fs::path existing_path(const Config& at, const std::string& text, const fs::path& folder) {
   const fs::path path = expanded_path(at, text, folder);
   std::error_code ignored;
@@ -89,7 +104,7 @@ fs::path existing_path(const Config& at, const std::string& text, const fs::path
     at.fail("names the missing file " + path.string(), text.find("SELVEDGE_DATA") != std::string::npos
                                                            ? "set SELVEDGE_DATA to the folder of the data"
                                                        : of_option ? "check the path"
-                                                                   : "paths are relative to the scene file");
+                                                                   : scene_cure(at, text));
   return path;
 }
 

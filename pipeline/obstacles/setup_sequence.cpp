@@ -53,6 +53,14 @@ SampleTimes cache_times(const Config& section, const PointCache& cache, std::vec
   return times;
 }
 
+std::string other_faces_text(const Mesh& mesh, const Mesh& first) {
+  const std::string of_first = "the first mesh of the sequence";
+  if (mesh.x.rows() == first.x.rows() && mesh.triangles.rows() == first.triangles.rows())
+    return "has as many faces as " + of_first + ", in another order or of other vertices";
+  return fmt::format("has other faces than {} ({} vertices and {} triangles, the first has {} and {})", of_first,
+                     mesh.x.rows(), mesh.triangles.rows(), first.x.rows(), first.triangles.rows());
+}
+
 // The name of a sequence of files for messages.
 std::string sequence_name(const Config& section) {
   return section["pattern"].given ? section["pattern"].text() : section["files"].words.front();
@@ -144,11 +152,8 @@ Sequence read_sequence(const Config& section, const std::filesystem::path& folde
       sequence.triangles = mesh.triangles;
       warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     } else if (!same_faces(mesh, first)) {
-      throw Error(
-          fmt::format("has other faces than the first mesh of the sequence ({} vertices and {} triangles, the "
-                      "first has {} and {})",
-                      mesh.x.rows(), mesh.triangles.rows(), sequence.frames[0].rows(), sequence.triangles.rows()),
-          file.string(), "an obstacle keeps its faces while it moves; used by " + section.where);
+      throw Error(other_faces_text(mesh, first), file.string(),
+                  "an obstacle keeps its faces while it moves; used by " + section.where);
     }
     sequence.frames.push_back(unit * mesh.x);
   }

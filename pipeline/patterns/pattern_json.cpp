@@ -4,8 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config.hpp"
-#include "pipeline/host/json_text.hpp"
-#include "pipeline/host/library_message.hpp"
+#include "pipeline/host/json_file.hpp"
 #include "pipeline/host/read_file.hpp"
 #include "pipeline/patterns/pattern.hpp"
 #include "pipeline/patterns/pattern_check.hpp"
@@ -215,13 +214,7 @@ struct PatternReader {
 }  // namespace
 
 Pattern pattern_of(const std::string& json, const std::string& file) {
-  Json parsed;
-  try {
-    parsed = parse_json(without_nan(json));
-  } catch (const Json::exception& error) {
-    throw Error("is no JSON: " + library_message(error.what()), file, form_cure);
-  }
-  return PatternReader{file}.read(parsed);
+  return PatternReader{file}.read(json_of_file(without_nan(json), file));
 }
 
 Pattern read_pattern(const std::filesystem::path& path) {

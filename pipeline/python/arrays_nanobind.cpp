@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/same_places.hpp"
 #include "physics/scene/scene_numbers.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
@@ -137,11 +137,13 @@ void warn(const std::vector<std::string>& warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) < 0) throw nb::python_error();
 }
 
-void turn_outward_warning(const std::string& name, const Points& x, Triangles& triangles) {
+WeldedSurface closed_outward(const std::string& name, Points& x, Triangles triangles) {
+  if (x.rows() == 0 || triangles.rows() == 0 || !x.allFinite())
+    return {make_surface(static_cast<int>(x.rows()), triangles), {}};
   std::vector<std::string> warnings;
-  if (x.rows() > 0 && triangles.rows() > 0 && x.allFinite())
-    turn_outward(name, {}, {&x, 1}, same_places(x), triangles, warnings);
+  turn_outward(name, {}, {&x, 1}, seam_places({&x, 1}, triangles), triangles, warnings);
   warn(warnings);
+  return closed_surface({&x, 1}, triangles);
 }
 
 nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> view_of(Points& points, const nb::handle& owner) {

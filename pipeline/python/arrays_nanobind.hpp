@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/geometry/points.hpp"
+#include "collision/geometry/welded_surface.hpp"
 
 namespace selvedge {
 
@@ -33,8 +33,9 @@ nanobind::list list_of(const nanobind::handle& items, const std::string& where, 
 // As Python's UserWarning, one each. Throws what Python raises where its filters make errors of warnings.
 void warn(const std::vector<std::string>& warnings);
 
-// Turns the closed shells of a surface outwards (outward_mesh.hpp), and warns as `warn` does.
-void turn_outward_warning(const std::string& name, const Points& x, Triangles&);
+// A body or an obstacle of arrays as one of a file: its closed shells face outwards (outward_mesh.hpp), its seams are
+// closed (seam_places.hpp), and their vertices are moved together. Warns as `warn` does.
+WeldedSurface closed_outward(const std::string& name, Points& x, Triangles);
 
 // A view of points that `owner` holds: numpy reads and writes them where they are, and keeps the owner alive.
 nanobind::ndarray<nanobind::numpy, double, nanobind::shape<-1, 3>> view_of(Points&, const nanobind::handle& owner);

@@ -117,10 +117,10 @@ void bind_scene(nb::module_& module) {
   nb::class_<SceneObject>(
       module, "Scene", nb::type_slots(collected),
       "Cloths and obstacles with their state, stepped by the conventional stepper or as a file says.")
-      .def(nb::init<const std::filesystem::path&, const std::vector<std::string>&, const nb::dict&>(), "file"_a,
-           "overrides"_a = std::vector<std::string>{}, "kinds"_a = nb::dict(),
-           "A scene file (YAML). overrides: key=value with dotted keys. kinds: names that run.stepper may have beside "
-           "the known ones, each with its subclass of Stepper.")
+      .def(nb::init<const std::filesystem::path&, const nb::object&, const nb::dict&>(), "file"_a,
+           "overrides"_a = nb::tuple(), "kinds"_a = nb::dict(),
+           "A scene file (YAML). overrides: a list of texts key=value with dotted keys, or a dict of them. kinds: "
+           "names that run.stepper may have beside the known ones, each with its subclass of Stepper.")
       .def(nb::init<const nb::object&, bool>(), nb::kw_only(), "stepper"_a = nb::none(), "contact_forces"_a = false,
            "A scene without anything, at 30 frames a second, under gravity. stepper: a subclass of Stepper; None: the "
            "conventional one. contact_forces: whether steps find them.")

@@ -13,6 +13,7 @@
 #include "pipeline/python/arrays_nanobind.hpp"
 #include "pipeline/python/bindings_nanobind.hpp"
 #include "pipeline/python/fields_nanobind.hpp"
+#include "pipeline/python/overrides_nanobind.hpp"
 #include "pipeline/python/python_stop_nanobind.hpp"
 #include "pipeline/python/stepper_nanobind.hpp"
 #include "pipeline/python/unlocked_nanobind.hpp"
@@ -28,13 +29,12 @@ namespace {
 namespace nb = nanobind;
 using namespace nb::literals;
 using Path = std::filesystem::path;
-using Texts = std::vector<std::string>;
 
 nb::object object_of_json(const std::string& text) { return nb::module_::import_("json").attr("loads")(text); }
 
-nb::object plan_of(const Path& file, const Texts& overrides, const nb::dict& kinds) {
-  return object_of_json(
-      plan_json(read_setup(file, overrides, kinds_with(kinds, std::make_shared<HeldObjects::element_type>()))));
+nb::object plan_of(const Path& file, const nb::object& overrides, const nb::dict& kinds) {
+  return object_of_json(plan_json(
+      read_setup(file, overrides_of(overrides), kinds_with(kinds, std::make_shared<HeldObjects::element_type>()))));
 }
 
 nb::object fit_of(const Path& run, const std::optional<Path>& scene, const std::string& body,
@@ -66,34 +66,34 @@ auto followed_by(Request request, const nb::object& log, const Work& work) {
   return made;
 }
 
-nb::object dataset_of(const Path& config, const std::optional<Path>& out, const Texts& overrides,
+nb::object dataset_of(const Path& config, const std::optional<Path>& out, const nb::object& overrides,
                       const nb::object& log) {
   DatasetRequest request;
   request.config = config;
-  request.overrides = overrides;
+  request.overrides = overrides_of(overrides);
   request.out = out.value_or("");
   return object_of_json(dataset_json(followed_by(request, log, make_dataset)));
 }
 
-nb::object train_of(const Path& config, const std::optional<Path>& out, const Texts& overrides, bool resume,
+nb::object train_of(const Path& config, const std::optional<Path>& out, const nb::object& overrides, bool resume,
                     const nb::object& log) {
   const RunningMark mark(config);
   if (mark.other()) warn({"another training runs: " + *mark.other()});
   TrainRequest request;
   request.config = config;
-  request.overrides = overrides;
+  request.overrides = overrides_of(overrides);
   request.out = out.value_or("");
   request.resume = resume;
   return object_of_json(followed_by(request, log, train_as_asked).json);
 }
 
-nb::object compare_file(const Path& file, const nb::dict& kinds, const Path& out, const Texts& overrides,
+nb::object compare_file(const Path& file, const nb::dict& kinds, const Path& out, const nb::object& overrides,
                         bool short_form, const nb::object& log) {
   CompareRequest request;
   request.file = file;
   request.kinds = kinds_with(kinds, std::make_shared<HeldObjects::element_type>());
   request.out = out;
-  request.overrides = overrides;
+  request.overrides = overrides_of(overrides);
   request.short_form = short_form;
   const CompareResult result = followed_by(std::move(request), log, compare);
   nb::object rows = object_of_json(compare_json(result));
@@ -125,7 +125,7 @@ nb::object page_of(const std::vector<Path>& runs, std::size_t limit) {
 void bind_runs(nb::module_& module) {
   const nb::object print = nb::module_::import_("builtins").attr("print");
   module.def(
-      "plan", &plan_of, "file"_a, "overrides"_a = Texts{}, "kinds"_a = nb::dict(),
+      "plan", &plan_of, "file"_a, "overrides"_a = nb::tuple(), "kinds"_a = nb::dict(),
       "What a scene file needs, what is left out, and why: what `selvedge plan --json` prints, a dict. overrides "
       "and kinds as for Scene.");
   module.def("fit", &fit_of, "run"_a, nb::kw_only(), "scene"_a = nb::none(), "body"_a = "", "regions"_a = nb::none(),
@@ -135,17 +135,18 @@ void bind_runs(nb::module_& module) {
              "scene: the file that the run was made of (config.yaml beside it); body: an obstacle's name (the first "
              "body); regions: a file of the body's vertices by name (its joints); frame: the last; reach: what is "
              "nearer touches the skin [m] (twice the contact thickness); out: a page to write.");
-  module.def("dataset", &dataset_of, "config"_a, "out"_a = nb::none(), "overrides"_a = Texts{}, "log"_a.none() = print,
+  module.def("dataset", &dataset_of, "config"_a, "out"_a = nb::none(), "overrides"_a = nb::tuple(),
+             "log"_a.none() = print,
              "Makes drapes at rest to train a network on, as the command does, in the folder out (out/data/NAME). log: "
              "called with a line for each path; None: silent. Ctrl-C keeps the paths that are done; the same call goes "
              "on. Returns what `selvedge dataset --json` prints, a dict.");
-  module.def("train", &train_of, "config"_a, "out"_a = nb::none(), "overrides"_a = Texts{}, "resume"_a = false,
+  module.def("train", &train_of, "config"_a, "out"_a = nb::none(), "overrides"_a = nb::tuple(), "resume"_a = false,
              "log"_a.none() = print,
              "Trains a network, as the command does, in the folder out (out/training/NAME). resume: from the folder's "
              "checkpoint. log: called with a line now and then; None: silent. Ctrl-C ends it at a checkpoint. Returns "
              "what `selvedge train --json` prints, a dict.");
   module.def("compare", &compare_file, "file"_a, "kinds"_a = nb::dict(), "out"_a = Path("out/compare"),
-             "overrides"_a = Texts{}, "short"_a = false, "log"_a.none() = print,
+             "overrides"_a = nb::tuple(), "short"_a = false, "log"_a.none() = print,
              "Runs a comparison file (YAML), whose settings may name steppers of kinds, name to subclass of Stepper. "
              "What is finished is kept in the folder out, by the file's settings: empty it when a class has changed. "
              "log: called with a line as each part ends; None: silent. Ctrl-C keeps the parts that are done. Returns "

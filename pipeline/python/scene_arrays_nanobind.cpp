@@ -4,16 +4,16 @@
 #include <fmt/format.h>
 
 #include "collision/geometry/error.hpp"
-#include "collision/geometry/same_places.hpp"
-#include "collision/geometry/welded_surface.hpp"
 #include "physics/scene/make_scene.hpp"
 #include "physics/scene/scene_numbers.hpp"
 #include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/joint_regressor.hpp"
 #include "pipeline/config/config_text.hpp"
 #include "pipeline/formats/mesh_faults.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
+#include "pipeline/python/overrides_nanobind.hpp"
 #include "pipeline/python/scene_nanobind.hpp"
 #include "pipeline/scene/config_scene.hpp"
 #include "pipeline/scene/massless.hpp"
@@ -29,15 +29,7 @@ using namespace nb::literals;
 
 // A dictionary with the keys of a section of scene files, checked as that is.
 Config section_of(const nb::dict& values, const Section& section, const std::string& where) {
-  std::string text;
-  try {
-    const nb::object plain = nb::module_::import_("operator").attr("methodcaller")("tolist");  // of numpy's numbers
-    text = nb::cast<std::string>(nb::module_::import_("json").attr("dumps")(values, "default"_a = plain));
-  } catch (const nb::python_error& error) {
-    throw Error(std::string("holds what a scene file cannot say: ") + nb::str(error.value()).c_str(), where,
-                "give numbers, texts, lists and dictionaries");
-  }
-  return read_section(text, section, where);
+  return read_section(yaml_of(values, where), section, where);
 }
 
 // What `material` of a scene file may be: a name, or a dictionary.
@@ -253,18 +245,12 @@ int SceneObject::add_obstacle_arrays(const nb::handle& x, const nb::handle& tria
   must_be_open();
   const std::string noun = "obstacle `" + name + "`";
   Points first = points_of(x, noun + ", x");
-  Triangles faces = triangles_of(triangles, first.rows(), noun + ", triangles");
-  turn_outward_warning(noun, first, faces);
+  const Triangles faces = triangles_of(triangles, first.rows(), noun + ", triangles");
+  WeldedSurface closed = closed_outward(noun, first, faces);
   const int number = add_obstacle(setup_.scene, static_cast<int>(first.rows()), faces, true, name);
-  std::vector<int> joined;
-  Surface& surface = setup_.scene.obstacles.back().surface;
-  if (std::optional<WeldedSurface> welded = welded_surface(surface, same_places(first))) {
-    surface = std::move(welded->surface);
-    joined = std::move(welded->joined);
-    hold_together(joined, first);
-  }
+  setup_.scene.obstacles.back().surface = std::move(closed.surface);
   obstacles_.push_back(std::move(first));
-  joined_.push_back(std::move(joined));
+  joined_.push_back(std::move(closed.joined));
   bodies_.emplace_back();
   body_frames_.emplace_back();
   return number;
@@ -281,9 +267,9 @@ void SceneObject::move_obstacle(int number, const nb::handle& x) {
   if (to.rows() != obstacles_[static_cast<std::size_t>(number)].rows())
     throw Error("has " + std::to_string(to.rows()) + " rows, not as many as before", where, "give every vertex");
   const std::vector<int>& joined = joined_[static_cast<std::size_t>(number)];
-  const std::vector<int> places = joined.empty() ? joined : same_places(to);
-  for (std::size_t v = 0; v < places.size(); ++v)
-    if (places[v] != places[static_cast<std::size_t>(joined[v])])
+  const double width = seam_width(to, setup_.scene.obstacles[static_cast<std::size_t>(number)].surface);
+  for (std::size_t v = 0; v < joined.size(); ++v)
+    if (!((row(to, static_cast<int>(v)) - row(to, joined[v])).norm() <= width))
       throw Error("opens a seam: vertex " + std::to_string(v) + " leaves vertex " + std::to_string(joined[v]) +
                       ", where it lay when the obstacle was added",
                   where, "add parts that come apart as obstacles of their own");

@@ -15,6 +15,7 @@
 #include "physics/steppers/decorated_stepper.hpp"
 #include "pipeline/host/write_file.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
+#include "pipeline/python/overrides_nanobind.hpp"
 #include "pipeline/python/python_stop_nanobind.hpp"
 #include "pipeline/run/memory_forms.hpp"
 #include "pipeline/run/prepare.hpp"
@@ -79,9 +80,8 @@ SceneObject::SceneObject(const nb::object& stepper, bool contact_forces)
   setup_.run.fps = 30;
 }
 
-SceneObject::SceneObject(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                         const nb::dict& kinds)
-    : setup_(read_setup(file, overrides, kinds_with(kinds, held_))) {
+SceneObject::SceneObject(const std::filesystem::path& file, const nb::object& overrides, const nb::dict& kinds)
+    : setup_(read_setup(file, overrides_of(overrides), kinds_with(kinds, held_))) {
   warn(scene_warnings(setup_));
   state_ = prepared(setup_);
   stepper_ = make_stepper(setup_);

@@ -46,8 +46,7 @@ struct SteppedFrame {
 class SceneObject {
  public:
   SceneObject(const nanobind::object& stepper, bool contact_forces);
-  SceneObject(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-              const nanobind::dict& kinds);
+  SceneObject(const std::filesystem::path& file, const nanobind::object& overrides, const nanobind::dict& kinds);
   SceneObject(const SceneObject&) = delete;
   SceneObject& operator=(const SceneObject&) = delete;
 

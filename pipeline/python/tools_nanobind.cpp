@@ -3,6 +3,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <array>
+
 #include "collision/audit/audit.hpp"
 #include "collision/contour/find_contours.hpp"
 #include "collision/distance/signed_distance.hpp"
@@ -38,8 +41,10 @@ void add_mesh(const nb::handle& x, const nb::handle& triangles, const std::strin
   meshes.points.push_back(points_of(x, before + "x"));
   const Eigen::Index n = meshes.points.back().rows();
   Triangles faces = triangles_of(triangles, n, before + "triangles");
-  if (!body.empty()) turn_outward_warning(body, meshes.points.back(), faces);
-  meshes.surfaces.push_back(make_surface(static_cast<int>(n), faces));
+  if (body.empty())
+    meshes.surfaces.push_back(make_surface(static_cast<int>(n), faces));
+  else
+    meshes.surfaces.push_back(closed_outward(body, meshes.points.back(), faces).surface);
 }
 
 // The cloth, then the bodies.
@@ -119,13 +124,35 @@ nb::list contours_of_arrays(const nb::handle& x, const nb::handle& triangles, co
   return all;
 }
 
+std::array<int, 3> sorted_corners(const Triangles& triangles, Eigen::Index t, const std::vector<int>& joined) {
+  std::array<int, 3> corners{};
+  for (int k = 0; k < 3; ++k) corners[k] = joined.empty() ? triangles(t, k) : joined[triangles(t, k)];
+  std::ranges::sort(corners);
+  return corners;
+}
+
+// Of each triangle of a surface that was closed its number among those given, which are in the same order, but for some
+// that were left out.
+std::vector<int> given_numbers(const Triangles& given, const WeldedSurface& closed) {
+  std::vector<int> numbers;
+  int next = 0;
+  for (Eigen::Index t = 0; t < closed.surface.triangles.rows(); ++t) {
+    const std::array<int, 3> corners = sorted_corners(closed.surface.triangles, t, {});
+    while (next + 1 < given.rows() && sorted_corners(given, next, closed.joined) != corners) ++next;
+    numbers.push_back(next++);
+  }
+  return numbers;
+}
+
 nb::dict distance_of_arrays(const nb::handle& points, const nb::handle& x, const nb::handle& triangles) {
   const Points at = points_of(points, "points");
-  Meshes meshes;
-  add_mesh(x, triangles, "", "the surface", meshes);
+  Points of_surface = points_of(x, "x");
+  const Triangles given = triangles_of(triangles, of_surface.rows(), "triangles");
+  const WeldedSurface closed = closed_outward("the surface", of_surface, given);
+  const std::vector<int> numbers = given_numbers(given, closed);
   const std::vector<SignedDistance> found = unlocked([&] {
-    DistanceField field(meshes.surfaces[0]);
-    field.move_to(meshes.points[0]);
+    DistanceField field(closed.surface);
+    field.move_to(of_surface);
     return field.ask(at);
   });
   Eigen::VectorXd value(at.rows());
@@ -136,7 +163,7 @@ nb::dict distance_of_arrays(const nb::handle& points, const nb::handle& x, const
     value[i] = one.value;
     gradient.row(i) = one.gradient.transpose();
     closest.row(i) = one.closest.transpose();
-    triangle.push_back(one.triangle);
+    triangle.push_back(one.triangle < 0 ? -1 : numbers[static_cast<std::size_t>(one.triangle)]);
   }
   nb::dict result;
   result["value"] = copy_of(value);

@@ -99,14 +99,15 @@ PinPart read_pin(const Config& section, const ClothPart& part) {
 void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warnings) {
   const int count = coincident_vertices(part.rest);
   if (count == 0) return;
-  const int joined = weldable(part.rest, part.mesh.triangles).joined;
+  const Welding seams = weldable(part.rest, part.mesh.triangles);
   const std::string welding =
-      fmt::format("`weld: true` under `mesh` joins {}, ",
-                  joined == count ? by_number(count, "it", "them") : fmt::format("{} of them", joined));
+      fmt::format("`weld: true` under `mesh` joins {}{}, ",
+                  seams.joined == count ? by_number(count, "it", "them") : fmt::format("{} of them", seams.joined),
+                  seams.layered ? ", if its layers are sewn there" : "");
   warnings.push_back(fmt::format("cloth `{}`: {} where {} and {} not joined to {}; {}`seams` join chosen ones",
                                  part.name, counted(count, "vertex lies", "vertices lie"),
                                  by_number(count, "another does", "others do"), by_number(count, "is", "are"),
-                                 by_number(count, "it", "them"), joined > 0 ? welding : ""));
+                                 by_number(count, "it", "them"), seams.joined > 0 ? welding : ""));
   if (const int layered = coincident_triangles(part.rest, part.mesh.triangles); layered > 0)
     warnings.push_back(fmt::format(
         "cloth `{}`: {} on another; if its mesh is two-sided, delete one of the sides, since both are cloth", part.name,
@@ -115,11 +116,11 @@ void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warning
 
 // A garment of a file whose seams are not welded falls apart along them.
 void warn_of_seams(const Config& garment, const ClothPart& part, std::vector<std::string>& warnings) {
-  const int joined = weldable(part.rest, part.mesh.triangles).joined;
-  if (joined == 0) return;
+  const Welding seams = weldable(part.rest, part.mesh.triangles);
+  if (seams.joined == 0) return;
   const bool is_mesh = lower_extension(garment["file"].text()) != ".h5";
   warnings.push_back("cloth `" + part.name + "`: " +
-                     unwelded_text(joined, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
+                     unwelded_text(seams, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
 }
 
 void warn_of_faults(const ClothPart& part, std::vector<std::string>& warnings) {

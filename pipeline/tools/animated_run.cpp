@@ -12,6 +12,7 @@
 #include "collision/geometry/box_diagonal.hpp"
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/same_places.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/exports/driven_mesh.hpp"
@@ -94,6 +95,7 @@ class RunSurfaces {
     }
     run.surfaces.frame = [reader = reader_, positions, obstacles = request_.obstacles, progress = request_.progress,
                           reads = run.reads, done = std::make_shared<int>(0)](int index) {
+      check_stop();
       Frame frame = reader->frame(index);
       std::vector<PointsF> all;
       for (const PositionsOf& one : positions) all.push_back(one(frame.x));

@@ -13,6 +13,7 @@
 #include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/hdf5/trajectory_hdf5.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/tools/check_measures.hpp"
@@ -26,8 +27,8 @@ struct Bodies {
   std::vector<Surface> surfaces;
   std::vector<Points> points;
 
-  void add(int vertex_count, const Triangles& triangles, Points x) {
-    surfaces.push_back(make_surface(vertex_count, triangles));
+  void add(Surface surface, Points x) {
+    surfaces.push_back(std::move(surface));
     points.push_back(std::move(x));
   }
   std::vector<AuditBody> for_audit() const {
@@ -42,8 +43,8 @@ void add_body_files(const CheckRequest& request, Bodies& bodies, CheckReport& re
     Mesh mesh = read_mesh(file);
     for (const std::string& warning : mesh.warnings) report.warnings.push_back(file.string() + ": " + warning);
     turn_outward(file.string(), mesh, report.warnings);
-    const int vertex_count = static_cast<int>(mesh.x.rows());
-    bodies.add(vertex_count, mesh.triangles, std::move(mesh.x));
+    Surface surface = closed_surface({&mesh.x, 1}, mesh.triangles).surface;
+    bodies.add(std::move(surface), std::move(mesh.x));
   }
 }
 
@@ -146,8 +147,9 @@ void warn_of_seams(const TrajectoryInfo& info, CheckReport& report) {
   for (std::size_t c = 0; c < info.cloth_names.size(); ++c) {
     const int vertex = info.cloth_first_vertex[c];
     const Points rest = info.rest.middleRows(vertex, info.cloth_first_vertex[c + 1] - vertex);
-    if (const int joined = rest.rows() > 0 ? weldable(rest, own_triangles(info, c)).joined : 0; joined > 0)
-      report.warnings.push_back("cloth `" + info.cloth_names[c] + "`: " + unwelded_text(joined, weld_keys_text));
+    const Welding seams = rest.rows() > 0 ? weldable(rest, own_triangles(info, c)) : Welding();
+    if (seams.joined > 0)
+      report.warnings.push_back("cloth `" + info.cloth_names[c] + "`: " + unwelded_text(seams, weld_keys_text));
   }
 }
 
@@ -162,7 +164,8 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
   if (!report.closed) report.warnings.push_back("the trajectory was not closed: its writer was stopped or is at work");
   warn_of_seams(info, report);
   Bodies bodies;
-  for (const TrajectoryInfo::Body& body : info.obstacles) bodies.add(body.vertex_count, body.triangles, Points());
+  for (const TrajectoryInfo::Body& body : info.obstacles)
+    bodies.add(make_surface(body.vertex_count, body.triangles), Points());
   add_body_files(request, bodies, report);
   const auto volume = volume_check(request, scene.surface, info, report);
   int last_cut = -1;
@@ -183,8 +186,8 @@ void check_trajectory(const CheckRequest& request, CheckReport& report) {
 void check_mesh(const CheckRequest& request, CheckReport& report) {
   const Mesh mesh = read_mesh(request.file);
   report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
-  if (const int joined = weldable(mesh.x, mesh.triangles).joined; joined > 0)
-    report.warnings.push_back(unwelded_text(joined, weld_keys_text));
+  if (const Welding seams = weldable(mesh.x, mesh.triangles); seams.joined > 0)
+    report.warnings.push_back(unwelded_text(seams, weld_keys_text));
   for (const std::string& fault : mesh_faults(mesh.x, mesh.triangles)) report.warnings.push_back(fault);
   Bodies bodies;
   add_body_files(request, bodies, report);

@@ -13,6 +13,7 @@
 #include "pipeline/bodies/body_makehuman.hpp"
 #include "pipeline/bodies/body_outward.hpp"
 #include "pipeline/bodies/body_smpl.hpp"
+#include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/hdf5/hdf5_fields.hpp"
@@ -86,7 +87,7 @@ BodyReport convert_body(const BodyRequest& request) {
   report.triangles = static_cast<int>(body.skin.triangles.rows());
   report.joints = static_cast<int>(body.joints.size());
   report.shapes = static_cast<int>(body.skin.shape_directions.cols());
-  report.closed = is_closed(make_surface(report.vertices, body.skin.triangles));
+  report.closed = is_closed(closed_surface(body).surface);
   report.height = rest.col(1).maxCoeff() - rest.col(1).minCoeff();
   const std::vector<int> found = smpl_joints_among(body.joints);
   if (const auto missing = std::ranges::find(found, -1); missing != found.end()) {

@@ -10,6 +10,7 @@
 #include "collision/geometry/counted.hpp"
 #include "collision/geometry/distance.hpp"
 #include "collision/geometry/error.hpp"
+#include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/formats/mesh_faults.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
@@ -88,7 +89,7 @@ void look_at(const Points& x, const Points& body, const BodyModel& model, const 
              DressReport& report) {
   const Triangles& triangles = report.garment.skin.triangles;
   const Surface cloth = make_surface(static_cast<int>(x.rows()), triangles);
-  const Surface surface = make_surface(static_cast<int>(body.rows()), model.skin.triangles);
+  const Surface surface = closed_surface(model).surface;
   report.components = cloth.component_count;
   Eigen::VectorXd distance(x.rows());
 #pragma omp parallel for schedule(static)
@@ -150,8 +151,9 @@ void weld_pieces(const DressRequest& request, Mesh& mesh, DressReport& report) {
     report.welded = weld(mesh, request.mesh.string(), request.weld_within).joined;
     return;
   }
-  report.weldable = weldable(mesh.x, mesh.triangles).joined;
-  if (report.weldable > 0) report.warnings.push_back(unwelded_text(report.weldable, "--weld"));
+  const Welding seams = weldable(mesh.x, mesh.triangles);
+  report.weldable = seams.joined;
+  if (seams.joined > 0) report.warnings.push_back(unwelded_text(seams, "--weld"));
 }
 
 }  // namespace

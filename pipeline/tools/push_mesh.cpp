@@ -6,6 +6,7 @@
 #include "learned/repulsion/repulsive_layer.hpp"
 #include "learned/repulsion/smooth_push.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 
 namespace selvedge {
@@ -66,7 +67,7 @@ PushReport push_mesh(const PushRequest& request) {
     report.warnings.insert(report.warnings.end(), read->warnings.begin(), read->warnings.end());
   turn_outward(request.body.string(), solid, report.warnings);
   const Surface garment = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
-  const Surface surface = make_surface(static_cast<int>(solid.x.rows()), solid.triangles);
+  const Surface surface = closed_surface({&solid.x, 1}, solid.triangles).surface;
   const std::optional<Mesh> truth = request.truth ? std::optional(read_truth(request, mesh)) : std::nullopt;
   DistanceField body(surface, shape_named(request.shape));
   body.move_to(solid.x);

@@ -8,6 +8,7 @@
 #include "collision/audit/audit.hpp"
 #include "collision/distance/signed_distance.hpp"
 #include "physics/energies/measures.hpp"
+#include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/bodies/up_axis.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
@@ -121,7 +122,7 @@ void measure(const BodyModel& body, PatternReport& report) {
   std::vector<double> strains;
   for (Eigen::Index t = 0; t < stretches.rows(); ++t) strains.push_back(stretches(t, 1) - 1);
   report.strain_99 = percentile(strains, 0.99);
-  const Surface surface = make_surface(static_cast<int>(body.skin.rest.rows()), body.skin.triangles);
+  const Surface surface = closed_surface(body).surface;
   const std::vector<AuditBody> bodies{{&surface, &body.skin.rest}};
   const Audit found = audit(scene.surface, sewn.x, bodies);
   report.self_pairs = static_cast<int>(found.self_pairs.size() + found.vertex_pairs.size());

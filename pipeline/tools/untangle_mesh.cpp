@@ -6,6 +6,7 @@
 #include "collision/geometry/error.hpp"
 #include "pipeline/config/config_units.hpp"
 #include "pipeline/formats/mesh_io.hpp"
+#include "pipeline/formats/seam_places.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/shapes/outward_mesh.hpp"
 #include "pipeline/tools/check.hpp"
@@ -25,7 +26,7 @@ std::vector<Body> read_bodies(const UntangleRequest& request, UntangleReport& re
     report.warnings.insert(report.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     const std::size_t said = report.warnings.size();
     turn_outward(file.string(), mesh, report.warnings);
-    Surface surface = make_surface(static_cast<int>(mesh.x.rows()), mesh.triangles);
+    Surface surface = closed_surface({&mesh.x, 1}, mesh.triangles).surface;
     if (!is_closed(surface) && report.warnings.size() == said)
       report.warnings.push_back(file.string() + ": is open, so that nothing can be inside it");
     bodies.push_back({std::move(surface), std::move(mesh.x)});

@@ -141,3 +141,50 @@ def test_pins_stay_where_they_are():
     scene.add_cloth(x, triangles, pins=[50, 48, 49, 48])
     selvedge.simulate(scene, 10)
     assert (scene.x[60 + np.array([48, 49, 50])] == x[48:51]).all() and scene.x[60:, 1].min() < -0.01
+
+
+def loose_box(gap):
+    """A box of faces that share no vertex, 0.1 m long; `gap`: how far its lid is off [m]."""
+    x, triangles = [], []
+    for axis in range(3):
+        for side in (0, 1):
+            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                corner = np.zeros(3)
+                corner[axis], corner[(axis + 1) % 3], corner[(axis + 2) % 3] = side, *((u, v) if side else (v, u))
+                x.append(0.1 * corner + [0, gap if axis == 1 and side else 0, 0])
+            n = len(x) - 4
+            triangles += [(n, n + 1, n + 2), (n, n + 2, n + 3)]
+    return np.array(x), np.array(triangles)
+
+
+@pytest.mark.parametrize("gap, closed", [(0, True), (1e-4, True), (0.01, False)])
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_seams_of_arrays_are_closed_as_those_of_files(gap, closed):
+    x, triangles = loose_box(gap)
+    cloth = [[0.03, 0.05, 0.03], [0.06, 0.05, 0.03], [0.03, 0.05, 0.06]]
+    assert selvedge.check(cloth, [[0, 1, 2]], [(x, triangles)])["inside_vertices"] == (3 if closed else 0)
+    for add in (
+        lambda scene: scene.add_obstacle(x, triangles),
+        lambda scene: scene.add_body(x, triangles, [[0.05, 0, 0.05]], np.ones((24, 1)), [-1]),
+    ):
+        scene = selvedge.Scene()
+        add(scene)
+        edges = np.sort(scene.obstacles[0]["triangles"][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2))
+        assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all() == closed
+
+
+def test_a_seam_of_an_obstacle_may_open_by_a_rounding_alone():
+    scene = selvedge.Scene()
+    scene.add_cloth([[1, 0, 0], [1, 0, 1], [2, 0, 0]], [[0, 1, 2]])
+    scene.add_obstacle(*loose_box(1e-4))
+    scene.step()
+    scene.move_obstacle(0, loose_box(5e-4)[0])
+    with pytest.raises(selvedge.Error, match="opens a seam"):
+        scene.move_obstacle(0, loose_box(0.01)[0])
+
+
+def test_distance_names_triangles_as_they_were_given():
+    x, triangles = loose_box(0)
+    first = [[0, 8, 5], [0, 1, 2]]  # one whose corners lie at two places, and one that is there again
+    found = selvedge.distance([[0.05, 0.2, 0.05]], x, np.vstack([first, triangles]))
+    assert found["triangle"][0] in (8, 9)

@@ -15,6 +15,7 @@ Bodies = Iterable[tuple[npt.ArrayLike, npt.ArrayLike]]
 Numbers = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 Material = str | Mapping[str, Any]
+Overrides = Sequence[str] | Mapping[str, Any]
 Report = dict[str, bool | int | float | str | list[int]]
 
 Log = Callable[[str], object] | None
@@ -98,10 +99,10 @@ class Scene:
 
     @overload
     def __init__(
-        self, file: Path, overrides: Sequence[str] = ..., kinds: Mapping[str, type[Stepper]] = ...
+        self, file: Path, overrides: Overrides = ..., kinds: Mapping[str, type[Stepper]] = ...
     ) -> None:
-        """A scene file (YAML). overrides: key=value with dotted keys. kinds: names that run.stepper may have beside the
-        known ones, each with its subclass of Stepper."""
+        """A scene file (YAML). overrides: a list of texts key=value with dotted keys, or a dict of them. kinds: names
+        that run.stepper may have beside the known ones, each with its subclass of Stepper."""
     @overload
     def __init__(self, *, stepper: type[Stepper] | None = None, contact_forces: bool = False) -> None:
         """A scene without anything, at 30 frames a second, under gravity. stepper: a subclass of Stepper; None: the
@@ -253,7 +254,7 @@ def read_surfaces(run: Path, obstacles: bool = ...) -> list[AnimatedSurface]:
 def read_cache(file: Path) -> Cache:
     """A point cache, .pc2, .pc16 (half floats, as CLOTH3D has them) or .mdd: fps, 0 where it does not say; at, when
     each sample is, in frames of that rate; x, a list of n x 3 in the file's unit, one a sample."""
-def plan(file: Path, overrides: Sequence[str] = ..., kinds: Mapping[str, type[Stepper]] = ...) -> dict[str, Any]:
+def plan(file: Path, overrides: Overrides = ..., kinds: Mapping[str, type[Stepper]] = ...) -> dict[str, Any]:
     """What a scene file needs, what is left out, and why: what `selvedge plan --json` prints, a dict. overrides and
     kinds as for Scene."""
 def fit(
@@ -272,13 +273,13 @@ def fit(
     vertices by name (its joints); frame: the last; reach: what is nearer touches the skin [m] (twice the contact
     thickness); out: a page to write."""
 def dataset(
-    config: Path, out: Path | None = ..., overrides: Sequence[str] = ..., log: Log = ...
+    config: Path, out: Path | None = ..., overrides: Overrides = ..., log: Log = ...
 ) -> dict[str, Any]:
     """Makes drapes at rest to train a network on, as the command does, in the folder out (out/data/NAME). log: called
     with a line for each path; None: silent. Ctrl-C keeps the paths that are done; the same call goes on. Returns what
     `selvedge dataset --json` prints, a dict."""
 def train(
-    config: Path, out: Path | None = ..., overrides: Sequence[str] = ..., resume: bool = ..., log: Log = ...
+    config: Path, out: Path | None = ..., overrides: Overrides = ..., resume: bool = ..., log: Log = ...
 ) -> dict[str, Any]:
     """Trains a network, as the command does, in the folder out (out/training/NAME). resume: from the folder's
     checkpoint. log: called with a line now and then; None: silent. Ctrl-C ends it at a checkpoint. Returns what
@@ -287,7 +288,7 @@ def compare(
     file: Path,
     kinds: Mapping[str, type[Stepper]] = ...,
     out: Path = ...,
-    overrides: Sequence[str] = ...,
+    overrides: Overrides = ...,
     short: bool = ...,
     log: Log = ...,
 ) -> dict[str, Any]:

@@ -96,6 +96,22 @@ TEST_CASE("plan and info print one JSON object") {
   REQUIRE(nlohmann::json::parse(info.out)["threads"] >= 1);
 }
 
+TEST_CASE("an empty text on the command line is refused with the option's name") {
+  const fake::Folder folder("main_empty");
+  struct Case {
+    const char *arguments, *where;
+  };
+  for (const Case& one :
+       {Case{"simulate scene.yaml --out ''", "selvedge: --out: "},
+        Case{"export run --format ''", "selvedge: --format: "}, Case{"plan scene.yaml --set ''", "selvedge: --set: "},
+        Case{"check ''", "selvedge: file: "}, Case{"weights info ''", "selvedge: file: "}}) {
+    const Ended ended = selvedge_program(folder, one.arguments);
+    INFO(ended.err);
+    CHECK(ended.status == 2);
+    CHECK(ended.err.find(std::string(one.where) + "is given an empty text") == 0);
+  }
+}
+
 TEST_CASE("waiting threads spin briefly unless the user says otherwise") {
   const fake::Folder folder("main_threads");
   const Ended info =

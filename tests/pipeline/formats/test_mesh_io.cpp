@@ -87,6 +87,25 @@ TEST_CASE("OBJ: every form of an index, polygons, groups, continued lines", "[me
   CHECK(mesh.warnings.empty());
 }
 
+TEST_CASE("OBJ: the rest of an o line is one name, each word of a g line is one", "[mesh_io]") {
+  struct Case {
+    std::string lines;
+    std::vector<std::string> groups;
+  };
+  const std::string face = "f 1 2 3\n";
+  for (const Case& c :
+       {Case{"o Left sleeve\n" + face, {"Left sleeve"}}, Case{"o  Left \t sleeve \n" + face, {"Left sleeve"}},
+        Case{"g cuff left\n" + face, {"cuff", "left"}},
+        Case{"o Left sleeve\ng cuff hem\n" + face, {"Left sleeve", "cuff", "hem"}},
+        Case{"o Left sleeve\n" + face + "o Right sleeve\n" + face, {"Left sleeve", "Right sleeve"}},
+        Case{"o shirt\ng shirt\n" + face, {"shirt"}}, Case{"o Left sleeve\no\n" + face, {}}}) {
+    CAPTURE(c.lines);
+    std::vector<std::string> found;
+    for (const auto& [name, vertices] : read("a.obj", triangle + c.lines).groups) found.push_back(name);
+    CHECK(found == c.groups);
+  }
+}
+
 TEST_CASE("Byte order marks are read over, unknown words counted, and what no OBJ file begins with is refused",
           "[mesh_io]") {
   const std::string faces = triangle + "v 1 1 0\nf 1 2 3\nf 2 4 3\n";

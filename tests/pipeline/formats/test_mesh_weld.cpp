@@ -61,8 +61,24 @@ TEST_CASE("weld: two panels become one along their common border", "[mesh_weld]"
   CHECK(surface.component_count == 1);
   CHECK(surface.nonmanifold_edges == 0);
   CHECK(weldable(mesh.x, mesh.triangles).joined == 0);
-  CHECK(unwelded_text(312, "--weld") == "the seams are not welded: --weld joins 312 vertices");
-  CHECK(unwelded_text(1, "--weld") == "the seams are not welded: --weld joins 1 vertex");
+  CHECK(unwelded_text({312}, "--weld") == "the seams are not welded: --weld joins 312 vertices");
+  CHECK(unwelded_text({1}, "--weld") == "the seams are not welded: --weld joins 1 vertex");
+  CHECK(unwelded_text({312, 0, true}, "--weld") ==
+        "layers meet at their borders and are not joined: --weld joins 312 vertices, if they are sewn there");
+}
+
+TEST_CASE("weld: layers are told from panels by how their faces lie at the border", "[mesh_weld]") {
+  struct Case {
+    double angle;  // between two panels
+    bool layered;
+  };
+  for (const Case& one : {Case{0.02, true}, Case{0.9, true}, Case{1.5, false}, Case{2, false}, Case{3.1, false}}) {
+    INFO(one.angle);
+    const Mesh mesh = book({0, one.angle});
+    const Welding seams = weldable(mesh.x, mesh.triangles);
+    CHECK(seams.joined == n);
+    CHECK(seams.layered == one.layered);
+  }
 }
 
 TEST_CASE("weld: the distance is a thousandth of an edge, or what is given", "[mesh_weld]") {

@@ -360,7 +360,7 @@ TEST_CASE("a full disk ends in an error and leaves the full frames readable") {
   INFO(text);
   REQUIRE(text.find("run.h5") != std::string::npos);
   REQUIRE(text.find("File too large") != std::string::npos);
-  REQUIRE(text.find("cure") != std::string::npos);
+  REQUIRE(text.find("ulimit -f") != std::string::npos);
   const TrajectoryReader reader(folder.path / "run.h5");
   REQUIRE_FALSE(reader.closed());
   REQUIRE(reader.frame_count() > 0);

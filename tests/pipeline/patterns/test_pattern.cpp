@@ -128,7 +128,7 @@ TEST_CASE("Broken patterns get one error that names panel and edge") {
              Contains("stitch 0") && Contains("edge 3 of the missing panel `stripe`") && Contains("strip"));
   CHECK_THAT(stitched(R"({"panel":"strip","edge":9})"), Contains("panel `strip`, edge 9 does not exist"));
   CHECK_THAT(stitched(R"({"panel":"square","edge":1})"), Contains(square + "1") && Contains("sew an edge once"));
-  CHECK_THAT(complaint("{"), Catch::Matchers::StartsWith("file.json: is no JSON: parse error at line 1"));
+  CHECK_THAT(complaint("{"), Catch::Matchers::StartsWith("file.json:1: is no JSON"));
   CHECK_THAT(complaint(R"({"pattern":{"panels":{}},"properties":{"units_in_meter":100}})"), Contains("no panels"));
   CHECK_THROWS_WITH(curved(R"({"type":"circle","params":[10,0,1]})"), Contains(square + "0") && Contains("radius"));
   CHECK_THROWS_WITH(curved(R"({"type":"cubik","params":[]})"), Contains(square + "0") && Contains("cubic"));

@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "collision/geometry/error.hpp"
+#include "collision/geometry/stop_scope.hpp"
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/hdf5/xdmf.hpp"
 #include "pipeline/tools/export.hpp"
@@ -63,6 +64,22 @@ TEST_CASE("the folder of a run is exported as its trajectory is") {
   const auto files = export_trajectory({folder.path, "glb", folder.path / "out", false, {}});
   REQUIRE(files.size() == 1);
   REQUIRE(files[0] == folder.path / "out" / "run.glb");
+}
+
+TEST_CASE("an export that is stopped keeps whole files alone") {
+  const fake::Folder folder("export_stopped");
+  const std::filesystem::path run = write_run(folder, fake::scene(), 4);
+  for (const std::string format : {"obj", "ply", "pc2", "mdd", "glb", "usda"}) {
+    const std::filesystem::path out = folder.path / format;
+    int asked = 0;
+    ExportRequest request{run, format, out, false};
+    const StopFlag stop = [&] { return ++asked > 2; };
+    const StopScope scope(stop);
+    INFO(format);
+    REQUIRE_THROWS_AS(export_trajectory(request), Stopped);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path))
+      REQUIRE(entry.path().extension() != ".part");
+  }
 }
 
 TEST_CASE("an unknown format is refused with those that are known") {

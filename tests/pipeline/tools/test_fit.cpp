@@ -172,7 +172,7 @@ TEST_CASE("fit: what is not there is named") {
   CHECK_THROWS_WITH(fit(regions("{\"arm\": [0, 1.5]}")), Contains("`arm` names 1.5"));
   CHECK_THROWS_WITH(fit(regions("{\"arm\": 3}")), Contains("`arm` is no list"));
   CHECK_THROWS_WITH(fit(regions("[1, 2]")), Contains("no segmentation"));
-  CHECK_THROWS_WITH(fit(regions("{\"arm\": [0")), Contains("no segmentation"));
+  CHECK_THROWS_WITH(fit(regions("{\"arm\": [0")), Contains("is no JSON"));
   CHECK(fit(regions("{\"all\": [0, 1, 2]}")).measures.rows.empty());
 }
 
