@@ -196,8 +196,7 @@ TEST_CASE("training people: patterns find files beside a training file that is n
   for (const char* pattern : {"sway*.npz", "./sway*.npz", "*way.npz", "moves/*.npz", "./moves/*.npz"}) {
     INFO(pattern);
     std::filesystem::current_path(own.folder.path);
-    const std::string told =
-        testing::refusal([&] { read_training("own.yaml", {clips_are + "['" + pattern + "']"}); });
+    const std::string told = testing::refusal([&] { read_training("own.yaml", {clips_are + "['" + pattern + "']"}); });
     std::filesystem::current_path(before);
     CHECK(told.empty());
   }
