@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/compare/evaluation.hpp"
@@ -12,20 +13,28 @@ std::string shown(double value, const char* format = "{:.1f}") {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
-std::string ratio_text(const PairedRatio& r) {
-  return fmt::format("  {:<18} over {:<18} {:>7} [{}, {}] of {} sequences{}\n", r.row, r.baseline,
+// Of the column of names: all are whole, so that the others stand below each other.
+std::size_t name_width(const Evaluation& e) {
+  std::size_t width = 18;
+  for (const EvaluatedRow& row : e.rows) width = std::max(width, row.row.size());
+  return width;
+}
+
+std::string ratio_text(const PairedRatio& r, std::size_t width) {
+  return fmt::format("  {:<{}} over {:<{}} {:>7} [{}, {}] of {} sequences{}\n", r.row, width, r.baseline, width,
                      shown(r.ratio, "{:.3g}"), shown(r.low, "{:.3g}"), shown(r.high, "{:.3g}"), r.sequences,
                      r.apart() ? ", apart" : "");
 }
 
 // Strains tell of garments that a network has never seen; the outfits of the validation split are of such.
 std::string strain_by_outfit(const Evaluation& e) {
-  std::string text = "principal strain by outfit, mean % (99th percentile %)\n  " + fmt::format("{:<18}", "");
+  const std::size_t width = name_width(e);
+  std::string text = "principal strain by outfit, mean % (99th percentile %)\n  " + std::string(width, ' ');
   for (const std::string& outfit : e.outfits) text += fmt::format(" {:>14}", outfit);
   text += "\n";
   for (const EvaluatedRow& row : e.rows) {
     if (row.sequences == 0) continue;
-    text += fmt::format("  {:<18}", row.row);
+    text += fmt::format("  {:<{}}", row.row, width);
     for (std::size_t k = 0; k < e.outfits.size(); ++k)
       text += fmt::format(" {:>14}", fmt::format("{} ({})", shown(100 * row.strain_of_outfit[k], "{:.2f}"),
                                                  shown(100 * row.strain_99_of_outfit[k])));
@@ -37,16 +46,17 @@ std::string strain_by_outfit(const Evaluation& e) {
 }  // namespace
 
 std::string evaluation_text(const Evaluation& e) {
+  const std::size_t width = name_width(e);
   std::string text =
       "evaluation: intersecting pairs of cloth, mean over frames and sequences; `body`: those of cloth with bodies\n "
       " " +
-      fmt::format("{:<18}", "");
+      std::string(width, ' ');
   for (std::size_t k = 0; k < e.outfits.size(); ++k)
     text += fmt::format(" {:>14}", fmt::format("{} ({})", e.outfits[k], e.vertices[k]));
   text +=
       fmt::format(" {:>10} {:>10} {:>9} {:>8} {:>8} {:>8}\n", "all", "body", "sequences", "at 0", "at 50", "at 150");
   for (const EvaluatedRow& row : e.rows) {
-    text += fmt::format("  {:<18}", row.row);
+    text += fmt::format("  {:<{}}", row.row, width);
     if (row.sequences == 0) {
       text += " " + row.trouble + "\n";
       continue;
@@ -58,14 +68,14 @@ std::string evaluation_text(const Evaluation& e) {
   }
   text += fmt::format("  \"at\" are means over the {} sequences that start tangled\n", e.tangled);
   text += "ratios of (pairs + 1), geometric means with intervals of 95 % over sequences\n";
-  for (const PairedRatio& ratio : e.ratios) text += ratio_text(ratio);
+  for (const PairedRatio& ratio : e.ratios) text += ratio_text(ratio, width);
   text += fmt::format("what keeps stiff or frozen cloth from looking good; kinetic energy and jitter over {}'s\n",
                       e.baseline);
-  text += fmt::format("  {:<18} {:>8} {:>8} {:>10} {:>8} {:>8} {:>10}\n", "", "strain %", "p99 %", "depth mm",
-                      "kinetic", "jitter", "frames/s");
+  text += fmt::format("  {} {:>8} {:>8} {:>10} {:>8} {:>8} {:>10}\n", std::string(width, ' '), "strain %", "p99 %",
+                      "depth mm", "kinetic", "jitter", "frames/s");
   for (const EvaluatedRow& row : e.rows)
     if (row.sequences > 0)
-      text += fmt::format("  {:<18} {:>8} {:>8} {:>10} {:>8} {:>8} {:>10}\n", row.row,
+      text += fmt::format("  {:<{}} {:>8} {:>8} {:>10} {:>8} {:>8} {:>10}\n", row.row, width,
                           shown(100 * row.strain, "{:.2f}"), shown(100 * row.strain_99, "{:.1f}"),
                           shown(1000 * row.depth, "{:.2f}"), shown(row.kinetic_ratio, "{:.2f}"),
                           shown(row.jitter_ratio, "{:.2f}"), shown(row.frames_a_second));

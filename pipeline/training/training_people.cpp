@@ -61,11 +61,12 @@ std::vector<std::string> found_files(const Config& clip, const fs::path& folder)
   const std::string begin = pattern.substr(0, pattern.find('*'));
   fs::path below = expanded_path(clip, begin.substr(0, begin.rfind('/') + 1), folder);
   if (below.empty()) below = ".";
-  const std::string whole = expanded_path(clip, pattern, folder).generic_string();
+  // Without a folder, entries are `./NAME` and the pattern may be `NAME`.
+  const std::string whole = expanded_path(clip, pattern, folder).lexically_normal().generic_string();
   std::vector<std::string> files;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(below, ignored))
-    if (entry.is_regular_file() && matches(whole, entry.path().generic_string()))
+    if (entry.is_regular_file() && matches(whole, entry.path().lexically_normal().generic_string()))
       files.push_back(pattern.starts_with('/') || pattern.starts_with('$')
                           ? entry.path().generic_string()
                           : entry.path().lexically_relative(folder.empty() ? "." : folder).generic_string());

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "pipeline/compare/sequences.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -124,6 +126,25 @@ TEST_CASE("evaluation: tables by hand", "[evaluation]") {
   CHECK(json["rows"][1]["strain_of_outfit"][0]["mean"].get<double>() == Approx(0.04));
   CHECK(evaluation_text(found).find("4.00 (-)") != std::string::npos);
   CHECK(json["by_frame"]["hood"][1] == 15);
+}
+
+TEST_CASE("evaluation: columns stand below each other beside a long name", "[evaluation]") {
+  Comparison comparison;
+  std::vector<CompareRow> rows;
+  for (const char* name : {"hood", "contourcraft_shown_share"}) {
+    comparison.settings.push_back({name, {}, {}, {}});
+    rows.push_back(sequence("a", name, {1, 1}, false));
+  }
+  comparison.evaluation.baseline = "hood";
+  const std::string text = evaluation_text(evaluated(comparison, {}, rows));
+  std::map<std::string, std::vector<std::size_t>> ends;  // of the row's line in each table
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    for (const char* name : {"  hood ", "  contourcraft_shown_share "})
+      if (line.starts_with(name) && line.find(" over ") == std::string::npos)
+        ends[name].push_back(line.find_last_not_of(' '));
+  CHECK(ends["  hood "].size() >= 3);
+  CHECK(ends["  hood "] == ends["  contourcraft_shown_share "]);
 }
 
 TEST_CASE("evaluation: bodies of tangled starts are not those with which a bare network was trained", "[evaluation]") {

@@ -187,6 +187,21 @@ TEST_CASE("training people: errors name place and cure", "[training]") {
   CHECK(own.error({}).empty());
 }
 
+TEST_CASE("training people: patterns find files beside a training file that is named without a folder", "[training]") {
+  const OwnData& own = own_data();
+  write_amass(own.folder.path / "sway.npz", 40, 0.3);
+  own.write("");
+  const std::string clips_are = "samples.people.anna.clips=";
+  const std::filesystem::path before = std::filesystem::current_path();
+  for (const char* pattern : {"sway*.npz", "./sway*.npz", "*way.npz", "moves/*.npz", "./moves/*.npz"}) {
+    INFO(pattern);
+    std::filesystem::current_path(own.folder.path);
+    const std::string told = testing::refusal([&] { read_training("own.yaml", {clips_are + "['" + pattern + "']"}); });
+    std::filesystem::current_path(before);
+    CHECK(told.empty());
+  }
+}
+
 TEST_CASE("training people: a configuration that is written reads back", "[training]") {
   const OwnData& own = own_data();
   const TrainingOptions options = read_training(own.write("  split: {validation: ['*swing']}\n"));
