@@ -19,9 +19,8 @@ void make_folder(const std::filesystem::path& path, const std::string& cure) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (!error) return;
-  const std::string of_reason = cure_to_write(error.message());
   throw Error("cannot make this folder (" + error.message() + ")", path.string(),
-              of_reason == write_cure ? cure : of_reason);
+              cure == write_cure ? cure_to_write(error.message()) : cure);
 }
 
 void remove_file(const std::filesystem::path& path) {
