@@ -77,6 +77,7 @@ LinearSolver chosen_solver(LinearSolver wanted, int free_vertices) {
 struct LinearSystemSolver::Impl {
   LinearSolver chosen;
   bool automatic = false;
+  bool stands_in = false;  // PCG does what CHOLMOD would do in a build that has it: it solves as well
   int direct_turns = 0;  // solves left for CHOLMOD, since PCG found the system stiff
   Cholesky cholesky;
   LowerTriangle lower;
@@ -172,7 +173,9 @@ LinearSystemSolver::LinearSystemSolver(LinearSolver wanted, Vertices vertices, s
   impl_->vertices = std::move(vertices);
   impl_->free.assign(free.begin(), free.end());
   impl_->automatic = wanted == LinearSolver::automatic;
-  impl_->chosen = chosen_solver(wanted, static_cast<int>(std::ranges::count(free, 1)));
+  const int free_vertices = static_cast<int>(std::ranges::count(free, 1));
+  impl_->chosen = chosen_solver(wanted, free_vertices);
+  impl_->stands_in = impl_->automatic && !Cholesky::available() && free_vertices <= direct_limit;
 }
 LinearSystemSolver::~LinearSystemSolver() = default;
 LinearSolver LinearSystemSolver::chosen() const { return impl_->chosen; }
@@ -200,7 +203,8 @@ LinearReport LinearSystemSolver::solve(const LinearSystem& system, std::span<con
   if (impl.chosen != LinearSolver::cholmod) {
     const int builds_before = impl.coarse_builds;
     const double share = impl.prepare_single(system, diagonal);
-    report = impl.solve_iterative(impl.single, system, diagonal, right, share * tolerance, max_iterations, x);
+    const double wanted = impl.stands_in ? std::min(tolerance, float_tolerance) : share * tolerance;
+    report = impl.solve_iterative(impl.single, system, diagonal, right, wanted, max_iterations, x);
     report.coarse_builds = impl.coarse_builds - builds_before;
     if (share == 1) impl.judge_preconditioner(report);
     if (impl.automatic && report.iterations > stiff_iterations && Cholesky::available())

@@ -18,7 +18,7 @@ struct LinearReport {
 
 // `automatic` takes CHOLMOD, where the build has it, for scenes of few free vertices, and multigrid for larger ones. If
 // a system is so stiff that multigrid needs very many iterations, CHOLMOD takes over for a while. Asking for CHOLMOD in
-// a build without it is an Error.
+// a build without it is an Error; `automatic` solves the few vertices by PCG to 1e-3 there, whatever the tolerance.
 LinearSolver chosen_solver(LinearSolver wanted, int free_vertices);
 
 // CHOLMOD and PCG behind one call. Holds caches: patterns, hierarchies, factors, vectors.
