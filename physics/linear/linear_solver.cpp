@@ -78,7 +78,7 @@ struct LinearSystemSolver::Impl {
   LinearSolver chosen;
   bool automatic = false;
   bool stands_in = false;  // PCG does what CHOLMOD would do in a build that has it: it solves as well
-  int direct_turns = 0;  // solves left for CHOLMOD, since PCG found the system stiff
+  int direct_turns = 0;    // solves left for CHOLMOD, since PCG found the system stiff
   Cholesky cholesky;
   LowerTriangle lower;
   std::vector<double> packed_right, packed_solution;
