@@ -151,7 +151,7 @@ constexpr EngineKernels avx2_kernels{16, 8, false, multiply_avx2, add_pairs_avx2
 constexpr EngineKernels avx512_kernels{
     32, 16, false, multiply_avx512, add_pairs_avx512, finish_avx512, exercise_avx512};
 #if defined(__x86_64__)
-constexpr EngineKernels int16_kernels{32, 16, true, multiply_int16, add_pairs_avx512, finish_avx512, exercise_avx512};
+constexpr EngineKernels vnni_kernels{32, 16, true, multiply_int16, add_pairs_avx512, finish_avx512, exercise_avx512};
 #endif
 
 }  // namespace
@@ -177,7 +177,7 @@ InstructionSet best_instruction_set() {
 }
 
 std::string name_of(InstructionSet set) {
-  if (set == InstructionSet::int16) return "AVX-512 VNNI";
+  if (set == InstructionSet::vnni) return "AVX-512 VNNI";
   return set == InstructionSet::avx512 ? "AVX-512" : set == InstructionSet::avx2 ? "AVX2" : "plain";
 }
 
@@ -185,7 +185,7 @@ const EngineKernels& kernels_for(InstructionSet set) {
   if (!is_supported(set))
     throw Error("this machine does not have the instruction set", name_of(set), "choose another one");
 #if defined(__x86_64__)
-  if (set == InstructionSet::int16) return int16_kernels;
+  if (set == InstructionSet::vnni) return vnni_kernels;
 #endif
   return set == InstructionSet::avx512 ? avx512_kernels : set == InstructionSet::avx2 ? avx2_kernels : plain_kernels;
 }

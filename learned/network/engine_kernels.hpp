@@ -5,8 +5,8 @@
 namespace selvedge {
 
 // Instruction sets of the kernels: plain x86-64 (or the machine's own), AVX2 with FMA, AVX-512. Results differ by
-// rounding. `int16` multiplies integers of 16 bits and adds up in 32 (AVX-512 VNNI); it has no kernels for training.
-enum class InstructionSet { plain, avx2, avx512, int16 };
+// rounding. `vnni` (AVX-512 VNNI) multiplies integers of 16 bits and adds up in 32; it has no kernels for training.
+enum class InstructionSet { plain, avx2, avx512, vnni };
 
 bool is_supported(InstructionSet);      // by this machine
 InstructionSet best_instruction_set();  // of the supported ones with 32-bit floats
@@ -17,7 +17,7 @@ constexpr int tile_rows = 24;
 // Rows of floats are padded with zeros to a multiple of this: whole panels for every instruction set.
 constexpr int padding = 32;
 
-// `int16` reads inputs two at a time, and the last of an odd number with a zero. Inputs are whole numbers up to this;
+// `vnni` reads inputs two at a time, and the last of an odd number with a zero. Inputs are whole numbers up to this;
 // the weights of an output are such that no sum leaves 32 bits.
 constexpr int largest_input = 16383;
 inline int pairs_of(int inputs) { return (inputs + 1) / 2; }

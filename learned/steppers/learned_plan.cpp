@@ -40,7 +40,7 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
   lines.push_back(settling_line(architecture, learned.settle));
   lines.push_back({"libtorch", learned.device != NetworkDevice::cpu, device_sentence(learned.device)});
   if (learned.device == NetworkDevice::cpu) {
-    const bool whole = kernels_of(learned.numbers) == InstructionSet::int16;
+    const bool whole = kernels_of(learned.numbers) == InstructionSet::vnni;
     lines.push_back({"16-bit integers", whole,
                      whole ? "in the network's products, as run.learned.numbers asks"
                      : learned.numbers == NetworkNumbers::automatic ? "this processor has no instruction for them"

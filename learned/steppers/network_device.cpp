@@ -17,11 +17,11 @@ std::vector<std::pair<std::string, NetworkNumbers>> network_numbers() {
 }
 
 InstructionSet kernels_of(NetworkNumbers numbers) {
-  const bool has = is_supported(InstructionSet::int16);
+  const bool has = is_supported(InstructionSet::vnni);
   if (numbers == NetworkNumbers::int16 && !has)
     throw Error("this processor does not add up products of 16-bit integers (AVX-512 VNNI)",
                 "run.learned.numbers: int16", "give `auto` or `float32`");
-  return numbers == NetworkNumbers::float32 || !has ? best_instruction_set() : InstructionSet::int16;
+  return numbers == NetworkNumbers::float32 || !has ? best_instruction_set() : InstructionSet::vnni;
 }
 
 namespace {

@@ -83,14 +83,14 @@ TEST_CASE("engine: every instruction set computes what the definition says", "[l
 }
 
 TEST_CASE("engine: with 16-bit integers every row is as near as their rounding allows", "[learned]") {
-  if (!is_supported(InstructionSet::int16)) {
+  if (!is_supported(InstructionSet::vnni)) {
     WARN("left out: this processor has no kernels for int16");
     return;
   }
   const auto check_near = [](const Architecture& a, const Graph& graph) {
     const NetworkWeights weights = random_weights(a, 5);
     LatentTrace ours, theirs;
-    const auto network = pack_network(a, weights, InstructionSet::int16);
+    const auto network = pack_network(a, weights, InstructionSet::vnni);
     const FeatureRows output = infer(*network, graph, &ours);
     CHECK(difference(output, by_definition::infer(a, weights, graph, &theirs)) < 2e-3f);
     for (std::size_t i = 0; i < ours.nodes.size(); ++i) CHECK(difference(ours.nodes[i], theirs.nodes[i]) < 2e-3f);
@@ -107,7 +107,10 @@ TEST_CASE("engine: with 16-bit integers every row is as near as their rounding a
 }
 
 TEST_CASE("engine: sums of 16-bit integers do not overflow, whatever the inputs", "[learned]") {
-  if (!is_supported(InstructionSet::int16)) return;
+  if (!is_supported(InstructionSet::vnni)) {
+    WARN("left out: this processor has no kernels for int16");
+    return;
+  }
   // Inputs and weights at their largest, of one sign: the largest sum that there can be.
   Architecture a = with_size("hood", 64, 0);
   a.layer_norm = false;
@@ -119,7 +122,7 @@ TEST_CASE("engine: sums of 16-bit integers do not overflow, whatever the inputs"
   Graph graph;
   graph.cloth_nodes = 3;
   graph.nodes = FeatureRows::Constant(3, a.node_inputs, 1e3f);
-  CHECK(difference(infer(*pack_network(a, weights, InstructionSet::int16), graph),
+  CHECK(difference(infer(*pack_network(a, weights, InstructionSet::vnni), graph),
                    by_definition::infer(a, weights, graph)) < 1e-3f);
 }
 
@@ -187,8 +190,8 @@ TEST_CASE("engine: weights that are no numbers give no numbers, and nothing wors
     NetworkWeights weights = random_weights(a, 2);
     weights.steps[1].node.layers[0].weight(3, 5) = bad;
     CHECK(infer(*pack_network(a, weights), graph).array().isNaN().all());
-    if (is_supported(InstructionSet::int16))
-      CHECK(!infer(*pack_network(a, weights, InstructionSet::int16), graph).allFinite());
+    if (is_supported(InstructionSet::vnni))
+      CHECK(!infer(*pack_network(a, weights, InstructionSet::vnni), graph).allFinite());
     for (const WeightArray& array : weight_arrays(a, weights)) std::fill_n(array.data, array.rows * array.columns, bad);
     CHECK(infer(*pack_network(a, weights), graph).array().isNaN().all());
   }

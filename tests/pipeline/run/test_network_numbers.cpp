@@ -31,7 +31,7 @@ double rms(const Points& d) { return std::sqrt(d.rowwise().squaredNorm().mean())
 }  // namespace
 
 TEST_CASE("16-bit integers change a network's step by a thousandth of its motion", "[learned]") {
-  if (!is_supported(InstructionSet::int16)) {
+  if (!is_supported(InstructionSet::vnni)) {
     WARN("left out: this processor has no kernels for int16");
     return;
   }
@@ -61,9 +61,9 @@ TEST_CASE("16-bit integers change a network's step by a thousandth of its motion
 TEST_CASE("Where the processor has no kernels for int16, `auto` takes float32 and int16 is an error with a cure",
           "[learned]") {
   CHECK(kernels_of(NetworkNumbers::float32) == best_instruction_set());
-  if (is_supported(InstructionSet::int16)) {
-    CHECK(kernels_of(NetworkNumbers::automatic) == InstructionSet::int16);
-    CHECK(kernels_of(NetworkNumbers::int16) == InstructionSet::int16);
+  if (is_supported(InstructionSet::vnni)) {
+    CHECK(kernels_of(NetworkNumbers::automatic) == InstructionSet::vnni);
+    CHECK(kernels_of(NetworkNumbers::int16) == InstructionSet::vnni);
   } else {
     CHECK(kernels_of(NetworkNumbers::automatic) == best_instruction_set());
     CHECK_THROWS_WITH(kernels_of(NetworkNumbers::int16),
