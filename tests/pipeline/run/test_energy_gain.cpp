@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "physics/energies/measures.hpp"
+#include "physics/linear/cholesky.hpp"
 #include "pipeline/run/simulate.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "tests/pipeline/cases.hpp"
@@ -34,13 +35,15 @@ Reasons run(const std::filesystem::path& file, std::vector<std::string> override
 
 }  // namespace
 
-TEST_CASE("energy gain: icm rejects what springs of 1 m threw about; the conventional stepper has nothing to hide",
+// The second frame is rejected where CHOLMOD solves. PCG does without the step that gains energy, and all frames are made.
+TEST_CASE("energy gain: icm makes no frame that springs of 1 m throw about; the conventional stepper has nothing to hide",
           "[energy_gain]") {
   const auto file = case_file("icm_energy/springs_1m.yaml");
   if (!file) return;
   const Reasons icm = run(*file, {"run.stepper=icm"});
-  CHECK(icm.last.status == StepStatus::rejected);
-  CHECK(icm.last.reason == Reason::energy_gain);
+  CHECK(icm.last.status == (Cholesky::available() ? StepStatus::rejected : StepStatus::accepted));
+  CHECK(icm.last.reason == (Cholesky::available() ? Reason::energy_gain : Reason::none));
+  CHECK(icm.gains.empty());
   CHECK(icm.energy < 12);
   const Reasons conventional = run(*file, {});
   CHECK(conventional.last.status == StepStatus::accepted);
