@@ -52,24 +52,38 @@ Energies EnergyBalance::energies_of(const State& state, const Vec3& acceleration
   return last_.energies;
 }
 
-double EnergyBalance::work_of(const State& from, const State& to, const Drive& drive, bool proposed) {
+WorkBound& EnergyBalance::work_bound() {
   if (!work_) work_.emplace(scene_, elastic_);
-  const Work work = proposed ? work_->of_world(from, to, drive) : (*work_)(from, to, drive);
-  return work.pins + work.obstacles + work.wind;
+  return *work_;
 }
 
-EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, State& to, bool proposed) {
+// `work_of` bounds the work of the step.
+template <class WorkOf>
+EnergyGain EnergyBalance::judge(const State& from, const Drive& drive, State& to, WorkOf&& work_of) {
   const Energies before = energies_of(from, drive.acceleration), after = energies_of(to, drive.acceleration);
   const double gained = gained_before(from), weight = masses_.sum() * std::max(earth, drive.acceleration.norm());
   const double unit = std::max(0.0, before.total() - before.gravity - gained) + weight * edge_length_;
   EnergyGain found{.gain = after.total() - before.total(), .tolerated = tolerated_part * unit};
   const bool driven = is_driven(scene_, from, to, drive);
-  if (driven && found.gain > 0)
-    found.work = found.gain > slight * unit ? work_of(from, to, drive, proposed) : found.gain;
+  if (driven && found.gain > 0) {
+    found.work = found.gain;
+    if (found.gain > slight * unit) {
+      const Work work = work_of();
+      found.work = work.pins + work.obstacles + work.wind;
+    }
+  }
   const double nowhere = gained + (found.gain > 0 ? std::max(found.gain - found.work, 0.0) : found.gain);
   found.nowhere = nowhere < 0 ? 0 : nowhere;  // NaN stays NaN
   remember(found.from_nowhere() ? 0 : found.nowhere, to);
   return found;
+}
+
+EnergyGain EnergyBalance::operator()(const State& from, const Drive& drive, State& to) {
+  return judge(from, drive, to, [&] { return work_bound()(from, to, drive); });
+}
+
+EnergyGain EnergyBalance::of_proposal(const State& from, const Drive& drive, State& to, PathPairs& listed) {
+  return judge(from, drive, to, [&] { return work_bound().of_world(from, to, drive, &listed); });
 }
 
 void EnergyBalance::label(const State& from, const Drive& drive, State& to, StepReport& report) {

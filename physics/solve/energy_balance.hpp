@@ -26,16 +26,19 @@ class EnergyBalance {
   EnergyBalance(const EnergyBalance&) = delete;
   EnergyBalance& operator=(const EnergyBalance&) = delete;
   // Judges an accepted step; positions and velocities must be finite. The memory of `to` gets the sum of unexplained
-  // gains; after a step that is `from_nowhere` the sum is 0 again. `proposed`: no solver has balanced the end, so that
-  // the work is that of WorkBound::of_world.
-  EnergyGain operator()(const State& from, const Drive&, State& to, bool proposed = false);
+  // gains; after a step that is `from_nowhere` the sum is 0 again.
+  EnergyGain operator()(const State& from, const Drive&, State& to);
+  // The same for a step whose end no solver has balanced: the work is that of WorkBound::of_world, whose `listed` this is.
+  EnergyGain of_proposal(const State& from, const Drive&, State& to, PathPairs& listed);
 
   // Sets the doubt `energy_gain` of an accepted step that is `from_nowhere`.
   void label(const State& from, const Drive&, State& to, StepReport&);
 
  private:
   Energies energies_of(const State&, const Vec3& acceleration);
-  double work_of(const State& from, const State& to, const Drive&, bool proposed);
+  template <class WorkOf>
+  EnergyGain judge(const State& from, const Drive&, State& to, WorkOf&&);
+  WorkBound& work_bound();
 
   std::optional<Scene> reduced_;  // without the forces that the stepper ignores; absent if it ignores none
   const Scene& scene_;            // that, or the scene itself

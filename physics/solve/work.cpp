@@ -75,12 +75,14 @@ void WorkBound::bound_by_start(const State& from, const State& to, const Drive& 
 Work WorkBound::operator()(const State& from, const State& to, const Drive& drive) {
   unnamed_forces(from, to, drive);
   held_.resize(0);
-  return sum(from, to);
+  PathPairs near;
+  return sum(from, to, near);
 }
 
-Work WorkBound::of_world(const State& from, const State& to, const Drive& drive) {
+Work WorkBound::of_world(const State& from, const State& to, const Drive& drive, PathPairs* listed) {
   bound_by_start(from, to, drive);
-  return sum(from, to);
+  PathPairs own;
+  return sum(from, to, listed ? *listed : own);
 }
 
 double WorkBound::carrying_force(const State& from, double dt, int vertex, const Vec3& way) const {
@@ -89,7 +91,7 @@ double WorkBound::carrying_force(const State& from, double dt, int vertex, const
   return std::min(unnamed_[vertex], held_[vertex] + brought);
 }
 
-Work WorkBound::sum(const State& from, const State& to) {
+Work WorkBound::sum(const State& from, const State& to, PathPairs& near) {
   Work work;
   const Eigen::VectorXd distance = (to.x - from.x).rowwise().norm();
   for (int i = 0; i < distance.size(); ++i) work.wind += wind_work_[i];
@@ -102,10 +104,9 @@ Work WorkBound::sum(const State& from, const State& to) {
 
   const Points nodes0 = gather_nodes(from.x, from.obstacles), nodes1 = gather_nodes(to.x, to.obstacles);
   const double thickness = scene_.contact.thickness;
-  PathPairs path;
-  update_pairs(search_, thickness, nodes0, nodes1, path);
+  update_pairs(search_, thickness, nodes0, nodes1, near);
   Eigen::VectorXd carried = Eigen::VectorXd::Zero(distance.size()), pressed = carried;
-  for (const NodePair& pair : path.pairs)
+  for (const NodePair& pair : near.pairs)
     for (const int node : pair.nodes) {
       if (world_.is_cloth(node)) continue;
       const Vec3 way = row(nodes1, node) - row(nodes0, node);
@@ -115,7 +116,7 @@ Work WorkBound::sum(const State& from, const State& to) {
         if (world_.is_cloth(vertex))
           raise(carried, vertex, carrying_force(from, to.time - from.time, vertex, way) * moved);
     }
-  for (const Proximity& p : find_proximities(world_, pairs_within(path, nodes0, thickness), nodes0, thickness))
+  for (const Proximity& p : find_proximities(world_, pairs_within(near, nodes0, thickness), nodes0, thickness))
     for (const int node : p.pair.nodes)
       if (world_.is_cloth(node)) raise(pressed, node, p.rest_gap - p.gap);
   if (!from.clean) {

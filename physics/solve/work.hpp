@@ -27,18 +27,21 @@ struct Work {
 //   pins       |R| of a flight: the cloth goes on as it moved, and pins go where they are driven
 //   obstacles  what holds the vertex at the start, and what brings it to the velocity of the obstacle in the step
 //   wind       the force of the air at the start, times the largest displacement that it can cause
+// `listed`: pairs near this or another motion of the cloth and its obstacles, which are brought up to date where the
+// caller has such a list; null: all are searched for.
+//
 // Holds caches, and references to the scene and its elements.
 class WorkBound {
  public:
   WorkBound(const Scene&, const Elastic&);
   Work operator()(const State& from, const State& to, const Drive&);
-  Work of_world(const State& from, const State& to, const Drive&);
+  Work of_world(const State& from, const State& to, const Drive&, PathPairs* listed = nullptr);
 
  private:
   void unnamed_forces(const State& from, const State& to, const Drive&);
   void bound_by_start(const State& from, const State& to, const Drive&);
   double carrying_force(const State& from, double dt, int vertex, const Vec3& way) const;  // of an obstacle [N]
-  Work sum(const State& from, const State& to);
+  Work sum(const State& from, const State& to, PathPairs& near);
 
   const Scene& scene_;
   ContactWorld world_;

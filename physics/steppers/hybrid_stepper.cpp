@@ -204,8 +204,10 @@ bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
   if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
   if (work.report.doubts.energy_gain) return true;
   const Timed timed(work.report.seconds.guard);
-  const bool proposed = options_.mode == HybridMode::response;  // other modes bound the proposal's elastic energy
-  return verdict == Verdict::admitted && energy_(work.from, work.drive, work.to, proposed).from_nowhere();
+  if (verdict != Verdict::admitted) return false;
+  // Other modes bound the proposal's elastic energy.
+  if (options_.mode != HybridMode::response) return energy_(work.from, work.drive, work.to).from_nowhere();
+  return energy_.of_proposal(work.from, work.drive, work.to, contact_.path).from_nowhere();
 }
 
 void HybridStepper::take_parent_step(Work& work) {

@@ -126,7 +126,9 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
               {"cholmod", LinearSolver::cholmod},
               {"pcg", LinearSolver::pcg},
               {"multigrid", LinearSolver::multigrid}},
-             "Linear solver. `automatic` takes `cholmod` for the smallest scenes, else `multigrid`."),
+             "Linear solver. `automatic` takes `cholmod` for the smallest scenes, else `multigrid`. `pcg` (block Jacobi) "
+             "finds the motion of whole cloths last: a sheet that slides down a slope lags by a fifth unless "
+             "`linear_tolerance` is 1e-3."),
       number("linear_tolerance", &O::linear_tolerance, Unit::none,
              {.low = 0, .high = 1, .low_in = false, .high_in = false},
              "Relative residual at which PCG ends, in the norm of its preconditioner. It is lowered for stiff cloth."),

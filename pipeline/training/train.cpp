@@ -158,10 +158,10 @@ void tell(TrainingRun& run, bool now = false) {
   run.told_every = std::min(1.5 * run.told_every, 60.0);
   const TrainingCounts& counts = run.counts;
   const double rate = static_cast<double>(counts.step - run.steps_before) / seconds_since(run.started);
-  run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g} J, {} bad samples, {} lost roll-outs",
+  run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g}{}, {} bad samples, {} lost roll-outs",
                       counts.step, run.options.steps, rate * run.options.optimiser.batch * process_count(*run.trainer),
                       rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
-                      counts.bad, counts.lost) +
+                      teacher_work(run.options.objective).targets ? " (targets in mm)" : " J", counts.bad, counts.lost) +
           teacher_text(run));
 }
 
