@@ -28,7 +28,8 @@ class EnergyBalance {
   // Judges an accepted step; positions and velocities must be finite. The memory of `to` gets the sum of unexplained
   // gains; after a step that is `from_nowhere` the sum is 0 again.
   EnergyGain operator()(const State& from, const Drive&, State& to);
-  // The same for a step whose end no solver has balanced: the work is that of WorkBound::of_world, whose `listed` this is.
+  // The same for a step whose end no solver has balanced: the work is that of WorkBound::of_world, whose `listed` this
+  // is.
   EnergyGain of_proposal(const State& from, const Drive&, State& to, PathPairs& listed);
 
   // Sets the doubt `energy_gain` of an accepted step that is `from_nowhere`.

@@ -121,14 +121,15 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
       integer("max_newton", &O::max_newton, at_least_one,
               "Largest number of Newton iterations in a solve. Solves with contact take half as many, and a solve that "
               "is still far from its minimum takes more."),
-      choice("linear_solver", &O::linear_solver,
-             {{"automatic", LinearSolver::automatic},
-              {"cholmod", LinearSolver::cholmod},
-              {"pcg", LinearSolver::pcg},
-              {"multigrid", LinearSolver::multigrid}},
-             "Linear solver. `automatic` takes `cholmod` for the smallest scenes, else `multigrid`. `pcg` (block Jacobi) "
-             "finds the motion of whole cloths last: a sheet that slides down a slope lags by a fifth unless "
-             "`linear_tolerance` is 1e-3."),
+      choice(
+          "linear_solver", &O::linear_solver,
+          {{"automatic", LinearSolver::automatic},
+           {"cholmod", LinearSolver::cholmod},
+           {"pcg", LinearSolver::pcg},
+           {"multigrid", LinearSolver::multigrid}},
+          "Linear solver. `automatic` takes `cholmod` for the smallest scenes, else `multigrid`. `pcg` (block Jacobi) "
+          "finds the motion of whole cloths last: a sheet that slides down a slope lags by a fifth unless "
+          "`linear_tolerance` is 1e-3."),
       number("linear_tolerance", &O::linear_tolerance, Unit::none,
              {.low = 0, .high = 1, .low_in = false, .high_in = false},
              "Relative residual at which PCG ends, in the norm of its preconditioner. It is lowered for stiff cloth."),

@@ -161,7 +161,8 @@ void tell(TrainingRun& run, bool now = false) {
   run.say(fmt::format("step {} of {}, {:.3g} samples/s, {} left, mean loss {:.4g}{}, {} bad samples, {} lost roll-outs",
                       counts.step, run.options.steps, rate * run.options.optimiser.batch * process_count(*run.trainer),
                       rate > 0 ? duration_text((run.options.steps - counts.step) / rate) : "?", run.window.mean_sum(),
-                      teacher_work(run.options.objective).targets ? " (targets in mm)" : " J", counts.bad, counts.lost) +
+                      teacher_work(run.options.objective).targets ? " (targets in mm)" : " J", counts.bad,
+                      counts.lost) +
           teacher_text(run));
 }
 

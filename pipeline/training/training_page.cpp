@@ -21,7 +21,8 @@ std::vector<PlottedColumn> terms_with(const std::string& ending) {
 }
 
 std::string step_plots(const CsvColumns& steps) {
-  return column_plot("Terms of the objective, without their signs", {"J, targets in mm", log_scale}, steps, terms_with("")) +
+  return column_plot("Terms of the objective, without their signs", {"J, targets in mm", log_scale}, steps,
+                     terms_with("")) +
          column_plot("Share of each term in the gradient", {}, steps, terms_with("_share")) +
          column_plot("Gradient of the weights", {"norm", log_scale}, steps, {{"gradient_norm", "norm"}}) +
          column_plot("Targets that the solver makes", {"targets a second"}, steps,

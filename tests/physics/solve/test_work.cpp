@@ -12,7 +12,7 @@ using testing::World;
 namespace {
 
 struct Books {
-  double gain = 0;  // of energy [J]
+  double gain = 0;               // of energy [J]
   Work work, of_world, of_list;  // the last with a list of pairs that goes on from frame to frame
 };
 

@@ -35,8 +35,9 @@ Reasons run(const std::filesystem::path& file, std::vector<std::string> override
 
 }  // namespace
 
-// The second frame is rejected where CHOLMOD solves. PCG does without the step that gains energy, and all frames are made.
-TEST_CASE("energy gain: icm makes no frame that springs of 1 m throw about; the conventional stepper has nothing to hide",
+// The second frame is rejected where CHOLMOD solves. PCG does without the step that gains energy, and all frames are
+// made.
+TEST_CASE("energy gain: icm makes no frame that springs of 1 m throw about; the conventional stepper hides nothing",
           "[energy_gain]") {
   const auto file = case_file("icm_energy/springs_1m.yaml");
   if (!file) return;
