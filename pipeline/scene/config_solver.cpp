@@ -128,8 +128,8 @@ const OptionRows<ImplicitEulerOptions>& implicit_euler_options() {
            {"pcg", LinearSolver::pcg},
            {"multigrid", LinearSolver::multigrid}},
           "Linear solver. `automatic` takes `cholmod` for the smallest scenes, else `multigrid`. `pcg` (block Jacobi) "
-          "finds the motion of whole cloths last: a sheet that slides down a slope lags by a fifth unless "
-          "`linear_tolerance` is 1e-3."),
+          "is rough at the default `linear_tolerance`: cloth stretches in fast contact, and a sheet that slides down a "
+          "slope lags by a fifth. With 1e-3 it does not lag."),
       number("linear_tolerance", &O::linear_tolerance, Unit::none,
              {.low = 0, .high = 1, .low_in = false, .high_in = false},
              "Relative residual at which PCG ends, in the norm of its preconditioner. It is lowered for stiff cloth."),

@@ -29,7 +29,8 @@ Roll roll_out(const Setup& setup, State state, int frames) {
     return true;
   };
   const int last = state.frame + frames;
-  const StepReport end = simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, last, state, note);
+  const StepReport end =
+      simulate(setup.scene, *make_stepper(setup), setup.drive_at, 1 / setup.run.fps, last, state, note);
   CHECK(end.status == StepStatus::accepted);
   roll.end = std::move(state);
   return roll;
@@ -43,9 +44,8 @@ TEST_CASE("student: the network that ships ends nearer to the solver than its gu
   const Setup solver = dressed({"run.quality=preview"});
   const State from = roll_out(solver, solver.initial, begin).end;
   const State reference = roll_out(solver, from, frames).end;
-  const Setup taught = dressed(
-      {"run.stepper=hybrid", "run.hybrid.mode=response", "run.quality=draft",
-       "run.learned.weights=" + (source_root() / "configs/weights/student.h5").string()});
+  const Setup taught = dressed({"run.stepper=hybrid", "run.hybrid.mode=response", "run.quality=draft",
+                                "run.learned.weights=" + (source_root() / "configs/weights/student.h5").string()});
   const Roll student = roll_out(taught, from, frames), guess = roll_out(dressed({"run.stepper=carried"}), from, frames);
   CHECK(2 * student.admitted > frames);
   CHECK(student.clean);
