@@ -1,7 +1,8 @@
 #include "collision/untangle/caught.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -17,15 +18,23 @@ namespace {
 
 constexpr double rigid_tolerance = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
 
-// Sets 1 for vertices of triangles that cross or are buried, and of triangles next to these.
-void add_crossing(const Surface& surface, const Points& x, std::vector<char>& marked) {
+// What a surface at x has inside of itself.
+struct InnerPart {
+  std::vector<char> buried;  // 1 for each buried triangle
+  std::vector<char> marked;  // 1 for each vertex of a triangle that crosses or is buried, and of those next to these; 0
+};                           // everywhere if nothing crosses
+
+InnerPart inner_part(const Surface& surface, const Points& x) {
   const std::vector<SheetView> view{{&surface, &x}};
   const Segments found = find_segments(view);
-  if (found.segments.empty()) return;
-  const std::vector<char> crossed = buried_vertices(surface, x, found);
+  InnerPart inner{buried_triangles(surface, x, found), {}};
+  inner.marked.assign(static_cast<std::size_t>(surface.vertex_count), 0);
+  if (found.segments.empty()) return inner;
+  const std::vector<char> own = buried_vertices(surface, found, inner.buried);
   for (const auto& corners : surface.triangles.rowwise())
-    if (crossed[corners[0]] || crossed[corners[1]] || crossed[corners[2]])
-      for (const int v : corners) marked[v] = 1;
+    if (own[corners[0]] || own[corners[1]] || own[corners[2]])
+      for (const int v : corners) inner.marked[v] = 1;
+  return inner;
 }
 
 Vec3 normal_of(const std::array<Vec3, 3>& at) { return (at[1] - at[0]).cross(at[2] - at[0]).normalized(); }
@@ -38,40 +47,71 @@ Mat3 frame_of(const std::array<Vec3, 3>& at) {
   return frame;
 }
 
-// The part of an obstacle that can be switched off, at the start and the end of a step.
+// An obstacle at the start and the end of a step, a part of which may be switched off.
 class Closing {
  public:
-  Closing(const Surface& surface, const Points& x0, const Points& x1, const std::vector<int>& faces, double reach)
+  // `part` and `buried`: 1 for each triangle that may be switched off, and for each that is buried at the start.
+  Closing(const Surface& surface, const Points& x0, const Points& x1, std::vector<char> part, std::vector<char> buried,
+          double reach)
       : surface_(surface),
         x0_(x0),
         x1_(x1),
+        part_(std::move(part)),
+        buried_(std::move(buried)),
         reach_(reach),
-        start_(make_face_tree(surface, x0, faces)),
-        end_(make_face_tree(surface, x1, faces)) {}
+        start_(make_face_tree(surface, x0, all_faces(surface))),
+        end_(make_face_tree(surface, x1, all_faces(surface))) {}
 
-  bool is_near(const Vec3& p, double within) const {
-    return nearest_face(start_, p, within, [](int) { return true; }).face >= 0;
+  bool is_near_part(const Vec3& p, double within) const {
+    return nearest_face(start_, p, within, [this](int t) { return part_[t] != 0; }).face >= 0;
   }
 
-  // The face through which the body's motion would take p, and where p would end.
+  // A face through which the body's motion would take p, and where p would end.
   struct Passage {
     int face;
     Vec3 to;
   };
-  std::optional<Passage> passage(const Vec3& p) const {
-    const auto before = [this, &p](int t) { return side(x0_, t, p) > 0; };
-    const NearestFace own = nearest_face(start_, p, reach_, before);
-    if (own.face < 0) return {};
-    const Vec3 to = carried(own, p), normal = normal_of(corners_of(surface_, x1_, own.face));
-    const auto gone_through = [&](int t) {
-      return before(t) && side(x1_, t, to) < 0 && normal_of(corners_of(surface_, x1_, t)).dot(normal) < facing_cosine;
-    };
-    const NearestFace other = nearest_face(end_, to, reach_, gone_through);
-    if (other.face < 0) return {};
-    return Passage{other.face, to};
+  // p moves with the nearest face that it is in front of, or with the nearest one above it that faces that one: of two
+  // parts that close on p either may be the one that moves. A dressed p may also be taken through a face that was
+  // buried, whichever side that one faces: a limb that comes out of the body below p.
+  std::vector<Passage> passages(const Vec3& p, bool dressed) const {
+    std::vector<Passage> found;
+    const NearestFace own = nearest_face(start_, p, reach_, [this, &p](int t) { return side(x0_, t, p) > 0; });
+    if (own.face < 0) return found;
+    add_passage(own, p, dressed, found);
+    const Vec3 normal = normal_of(corners_of(surface_, x0_, own.face));
+    const NearestFace opposite = nearest_face(start_, p, reach_, [&](int t) {
+      return side(x0_, t, p) > 0 && normal_of(corners_of(surface_, x0_, t)).dot(normal) < facing_cosine;
+    });
+    if (opposite.face >= 0 && is_above(opposite, p)) add_passage(opposite, p, dressed, found);
+    return found;
   }
 
  private:
+  static std::vector<int> all_faces(const Surface& surface) {
+    std::vector<int> faces(static_cast<std::size_t>(surface.triangles.rows()));
+    std::iota(faces.begin(), faces.end(), 0);
+    return faces;
+  }
+
+  void add_passage(const NearestFace& by, const Vec3& p, bool dressed, std::vector<Passage>& found) const {
+    const Vec3 to = carried(by, p), normal = normal_of(corners_of(surface_, x1_, by.face));
+    const auto gone_through = [&](int t) {
+      return (part_[t] || part_[by.face]) && side(x0_, t, p) > 0 && side(x1_, t, to) < 0 &&
+             ((dressed && buried_[t]) || normal_of(corners_of(surface_, x1_, t)).dot(normal) < facing_cosine);
+    };
+    const NearestFace other = nearest_face(end_, to, reach_, gone_through);
+    if (other.face >= 0) found.push_back({other.face, to});
+  }
+
+  // Does p lie in front of the face at the start, and not beside it?
+  bool is_above(const NearestFace& by, const Vec3& p) const {
+    constexpr double steepest = 0.7;  // cosine of 45 degrees
+    const std::array<Vec3, 3> at = corners_of(surface_, x0_, by.face);
+    const Vec3 off = p - by.weight[0] * at[0] - by.weight[1] * at[1] - by.weight[2] * at[2];
+    return normal_of(at).dot(off) > steepest * off.norm();
+  }
+
   double side(const Points& x, int t, const Vec3& p) const {
     const std::array<Vec3, 3> at = corners_of(surface_, x, t);
     return normal_of(at).dot(p - at[0]);
@@ -89,48 +129,51 @@ class Closing {
 
   const Surface& surface_;
   const Points &x0_, &x1_;
-  double reach_;  // largest motion of these faces in the step, plus a mean edge [m]
+  std::vector<char> part_, buried_;
+  double reach_;  // largest motion of the part in the step, plus a mean edge [m]
   FaceTree start_, end_;
 };
 
-// The triangles whose vertices are all marked.
-std::vector<int> faces_of(const Surface& body, const std::vector<char>& marked) {
-  std::vector<int> faces;
-  for (int t = 0; t < body.triangles.rows(); ++t)
-    if (marked[body.triangles(t, 0)] && marked[body.triangles(t, 1)] && marked[body.triangles(t, 2)])
-      faces.push_back(t);
+// 1 for each triangle whose vertices are all marked.
+std::vector<char> marked_faces(const Surface& body, const std::vector<char>& marked) {
+  std::vector<char> faces;
+  for (const auto& corners : body.triangles.rowwise())
+    faces.push_back(marked[corners[0]] && marked[corners[1]] && marked[corners[2]]);
   return faces;
 }
 
 // Marks vertices of the cloth, except `tangled` ones, that the motion of the body catches.
 void catch_anew(const Surface& body, const Points& x1, const Closing& closing, const Points& cloth,
-                const std::vector<char>& tangled, std::vector<char>& caught) {
+                const std::vector<char>& tangled, const std::vector<char>& dressed, std::vector<char>& caught) {
   const std::vector<char> closed = closed_shells(body);
   std::vector<int> into;  // vertices that would pass through a face of a closed shell
   std::vector<Vec3> places;
   for (int v = 0; v < cloth.rows(); ++v) {
     if (!cloth.row(v).allFinite() || (!tangled.empty() && tangled[v])) continue;
-    const auto passage = closing.passage(row(cloth, v));
-    if (!passage) continue;
-    if (!closed[body.component[body.triangles(passage->face, 0)]]) {
-      caught[v] = 1;
-      continue;
+    for (const Closing::Passage& passage : closing.passages(row(cloth, v), dressed[v] != 0)) {
+      if (!closed[body.component[body.triangles(passage.face, 0)]]) {
+        caught[v] = 1;
+        continue;
+      }
+      into.push_back(v);
+      places.push_back(passage.to);
     }
-    into.push_back(v);
-    places.push_back(passage->to);
   }
   Points there(static_cast<Eigen::Index>(into.size()), 3);
   for (std::size_t i = 0; i < into.size(); ++i) there.row(static_cast<Eigen::Index>(i)) = places[i].transpose();
   const std::vector<char> in = inside(body, x1, there);
-  for (std::size_t i = 0; i < into.size(); ++i) caught[into[i]] = in[i];
+  for (std::size_t i = 0; i < into.size(); ++i)
+    if (in[i]) caught[into[i]] = 1;
 }
 
 }  // namespace
 
 std::vector<int> may_be_switched_off(const Surface& surface, const Points& x) {
-  std::vector<char> marked(static_cast<std::size_t>(surface.vertex_count), 0);
-  add_crossing(surface, x, marked);
-  return faces_of(surface, marked);
+  const std::vector<char> part = marked_faces(surface, inner_part(surface, x).marked);
+  std::vector<int> faces;
+  for (int t = 0; t < static_cast<int>(part.size()); ++t)
+    if (part[t]) faces.push_back(t);
+  return faces;
 }
 
 bool moves_rigidly(const Surface& surface, const Points& x0, const Points& x1) {
@@ -151,20 +194,20 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
   const std::vector<char>& tangled = exemption.body;
   const bool rigid = moves_rigidly(body, x0, x1);
   if (rigid && (tangled.empty() || targets.rows() == 0)) return;
-  std::vector<char> marked(static_cast<std::size_t>(body.vertex_count), 0);
-  add_crossing(body, x0, marked);
-  add_crossing(body, x1, marked);
-  const std::vector<int> faces = faces_of(body, marked);
-  if (faces.empty()) return;
+  InnerPart before = inner_part(body, x0);
+  const std::vector<char> marked = either(std::move(before.marked), inner_part(body, x1).marked);
+  std::vector<char> part = marked_faces(body, marked);
+  if (std::ranges::find(part, 1) == part.end()) return;
   double motion = 0;
   for (std::size_t v = 0; v < marked.size(); ++v)
     if (marked[v]) motion = std::max(motion, (x1.row(v) - x0.row(v)).norm());
   const double edge = mean_edge(*world.cloth, cloth);
-  const Closing closing(body, x0, x1, faces, motion + edge);
-  std::vector<char> caught(static_cast<std::size_t>(cloth.rows()), 0);
-  if (!rigid) catch_anew(body, x1, closing, cloth, tangled, caught);
-  for (int v = 0; v < static_cast<int>(std::min<std::size_t>(tangled.size(), targets.rows())); ++v)
-    if (tangled[v] && targets.row(v).allFinite()) caught[v] = closing.is_near(row(cloth, v), edge);
+  const Closing closing(body, x0, x1, std::move(part), std::move(before.buried), motion + edge);
+  std::vector<char> caught(static_cast<std::size_t>(cloth.rows()), 0), dressed = caught;
+  for (Eigen::Index v = 0; v < targets.rows(); ++v) dressed[v] = targets.row(v).allFinite();
+  if (!rigid) catch_anew(body, x1, closing, cloth, tangled, dressed, caught);
+  for (std::size_t v = 0; v < tangled.size(); ++v)
+    if (tangled[v] && dressed[v]) caught[v] = closing.is_near_part(row(cloth, static_cast<int>(v)), edge);
   if (std::ranges::find(caught, 1) == caught.end()) return;
   if (exemption.switched_off.empty()) exemption.switched_off.assign(static_cast<std::size_t>(world.node_count), 0);
   for (std::size_t v = 0; v < caught.size(); ++v)

@@ -201,10 +201,10 @@ Verdict HybridStepper::propose_within_budget(Work& work) {
 // Whether an admitted or refined step gains energy from nowhere. The stepper that made it may have said so already. An
 // admitted proposal is judged again here, since a network knows only some of the scene's forces.
 bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
-  if (verdict != Verdict::admitted && verdict != Verdict::refined) return false;
+  if (verdict == Verdict::refined) return work.report.doubts.energy_gain;
+  if (verdict != Verdict::admitted) return false;
   if (work.report.doubts.energy_gain) return true;
   const Timed timed(work.report.seconds.guard);
-  if (verdict != Verdict::admitted) return false;
   // Other modes bound the proposal's elastic energy.
   if (options_.mode != HybridMode::response) return energy_(work.from, work.drive, work.to).from_nowhere();
   return energy_.of_proposal(work.from, work.drive, work.to, contact_.path).from_nowhere();

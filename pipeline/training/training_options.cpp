@@ -106,6 +106,8 @@ const Options<SampleOptions>& sample_options() {
               "Roll-outs with a folded sheet are not among them."),
        integer("simulated_frames", &O::simulated_frames, at_least_one,
                "Number of frames that the solver makes before such a roll-out, from the skinned garment on."),
+       flag("random_simulated", &O::random_simulated,
+            "True: that number is random, up to `simulated_frames`. False: it is `simulated_frames`."),
        number("noise_share", &O::noise_share, Unit::none, from_0_to_1,
               "Fraction of roll-outs with strong noise on the start positions in place of `noise`: its standard "
               "deviation on each coordinate is between 1 and 10 mm."),

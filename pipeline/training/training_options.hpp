@@ -54,6 +54,7 @@ struct SampleOptions {
   double no_body_share = 0, folded_share = 0;
   double simulated_share = 0;
   int simulated_frames = 20;
+  bool random_simulated = false;
   double noise_share = 0;
   bool soft_tissue = true;
   GarmentStart start = GarmentStart::skinned;

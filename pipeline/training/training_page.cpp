@@ -20,9 +20,9 @@ std::vector<PlottedColumn> terms_with(const std::string& ending) {
   return columns;
 }
 
-std::string step_plots(const CsvColumns& steps) {
-  return column_plot("Terms of the objective, without their signs", {"J, targets in mm", log_scale}, steps,
-                     terms_with("")) +
+std::string step_plots(const CsvColumns& steps, bool taught) {
+  return column_plot("Terms of the objective, without their signs", {taught ? "J, targets in mm" : "J", log_scale},
+                     steps, terms_with("")) +
          column_plot("Share of each term in the gradient", {}, steps, terms_with("_share")) +
          column_plot("Gradient of the weights", {"norm", log_scale}, steps, {{"gradient_norm", "norm"}}) +
          column_plot("Targets that the solver makes", {"targets a second"}, steps,
@@ -54,7 +54,8 @@ std::string measure_plots(const CsvColumns& measures) {
 
 std::string training_page(const TrainingOptions& options, const std::string& steps_csv,
                           const std::string& measures_csv) {
-  return page_head("Training " + options.name) + step_plots(CsvColumns(steps_csv)) +
+  return page_head("Training " + options.name) +
+         step_plots(CsvColumns(steps_csv), teacher_work(options.objective).targets) +
          measure_plots(CsvColumns(measures_csv)) + page_text("Configuration", training_yaml(options));
 }
 

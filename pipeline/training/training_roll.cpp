@@ -313,7 +313,8 @@ RollRequest draw_roll(const TrainingOptions& options, const TrainingWorld& world
   if (samples.noise_share > 0 && random.heads(samples.noise_share))
     request.noise = random.between(least_noise, most_noise);
   if (samples.simulated_share > 0 && random.heads(samples.simulated_share) && request.sheet != HungStart::folded) {
-    request.simulated = samples.simulated_frames;
+    request.simulated =
+        samples.random_simulated ? 1 + random.below(samples.simulated_frames) : samples.simulated_frames;
     request.still = false;
   }
   return request;

@@ -79,4 +79,16 @@ inline Sheet tucked() {
   return join(round_tube(24, 48, 0, [](double, double) { return 0.32; }), second);
 }
 
+// A closed block round `centre`, its faces cut in two.
+inline Sheet block(const Vec3& centre, double half) {
+  Sheet body;
+  body.x.resize(8, 3);
+  for (int v = 0; v < 8; ++v)
+    body.x.row(v) = (centre + half * Vec3(v & 1 ? 1 : -1, v & 2 ? 1 : -1, v & 4 ? 1 : -1)).transpose();
+  body.triangles.resize(12, 3);
+  body.triangles << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5,
+      3, 7, 5;
+  return body;
+}
+
 }  // namespace selvedge::testing

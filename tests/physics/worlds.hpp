@@ -31,6 +31,11 @@ inline void add_obstacle(World& w, const Sheet& body) {
   w.drive.obstacles.push_back(body.x);
 }
 
+// Its cloth, which meets itself, and its first obstacle.
+inline ContactWorld with_its_obstacle(const World& w) {
+  return make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+}
+
 // A sheet 5 cm above a plate, known to be clean.
 inline World sheet_over_plate() {
   World w = make_world(sheet(4, 0.2, 0.05));

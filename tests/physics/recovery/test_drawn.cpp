@@ -22,7 +22,7 @@ struct OverPlate {
 
   OverPlate() {
     testing::add_obstacle(w, sheet(8, 0.2, 0));
-    world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+    world = testing::with_its_obstacle(w);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
     exemption.switched_off.assign(static_cast<std::size_t>(world.node_count), 0);
     for (int node = w.scene.surface.vertex_count; node < world.node_count; ++node)

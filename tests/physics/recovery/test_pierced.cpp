@@ -54,7 +54,7 @@ struct Skewer {
     w.state.clean = false;
     w.drive.skinned_targets = w.state.x;
     w.drive.skinned_targets.col(1).array() += 0.5;
-    world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+    world = testing::with_its_obstacle(w);
     nodes = gather_nodes(w.state.x, w.state.obstacles);
   }
   std::vector<char> pierced(double min_distance = 1) const {
@@ -147,7 +147,7 @@ TEST_CASE("sunken: cloth that has no way out, and is too far to be put on, is dr
   testing::add_obstacle(w, block);
   w.state.clean = false;
   w.drive.acceleration.setZero();
-  const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+  const ContactWorld world = testing::with_its_obstacle(w);
   Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   const Exemption exemption = find_exemption(world, nodes);
   w.drive.skinned_targets = w.state.x.rowwise() + Eigen::RowVector3d(0, 1.5, 0);
@@ -228,7 +228,7 @@ TEST_CASE("put on: another layer that is in the way makes way, and keeps its vel
   v.bottomRows(25).setConstant(0.3);
   std::vector<char> marked(static_cast<std::size_t>(sheet) + 25, 0);
   std::fill_n(marked.begin(), sheet, 1);
-  const ContactWorld world = make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
+  const ContactWorld world = testing::with_its_obstacle(w);
   const Points before = nodes;
   const Points wanted = nodes;
   REQUIRE(put_on(world, marked, {&wanted, &targets, {}, 0.002, 0.1}, nodes, v) == PutOn::done);

@@ -7,30 +7,19 @@
 #include "collision/untangle/untangle.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/recovery/recovery.hpp"
-#include "physics/steppers/icm_stepper.hpp"
 #include "tests/frame.hpp"
 #include "tests/physics/worlds.hpp"
 
 namespace selvedge::test_recovery {
 
 using testing::add_obstacle;
+using testing::block;
 using testing::make_world;
 using testing::sheet;
+using testing::with_its_obstacle;
 using testing::World;
 
 namespace {
-
-// A closed block round `centre`, its faces cut in two.
-testing::Sheet block(const Vec3& centre, double half) {
-  testing::Sheet body;
-  body.x.resize(8, 3);
-  for (int v = 0; v < 8; ++v)
-    body.x.row(v) = (centre + half * Vec3(v & 1 ? 1 : -1, v & 2 ? 1 : -1, v & 4 ? 1 : -1)).transpose();
-  body.triangles.resize(12, 3);
-  body.triangles << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5,
-      3, 7, 5;
-  return body;
-}
 
 // Without gravity, within 20 frames, and no vertex faster than 0.1 m a frame that started tangled.
 void check_recovers(World w) {
@@ -62,10 +51,6 @@ Vec3 mass_mean(const Scene& scene, const Points& rows) {
   return linear_momentum(scene, rows) / lumped_masses(scene).sum();
 }
 
-ContactWorld with_its_obstacle(const World& w) {
-  return make_contact_world(w.scene.surface, {&w.scene.obstacles[0].surface}, true);
-}
-
 }  // namespace
 
 TEST_CASE("recovery: two sheets that start through each other get clean and stay so", "[recovery]") {
@@ -95,73 +80,6 @@ TEST_CASE("recovery: a clean start is left as it is", "[recovery]") {
   CHECK_FALSE(
       recover(world, Eigen::VectorXd::Ones(nodes.rows()), 1, find_exemption(world, nodes), {}, nodes).left_alone.any());
   CHECK(nodes == before);
-}
-
-TEST_CASE("recovery: a still body that crosses itself keeps what comes from outside out", "[recovery]") {
-  World w = make_world(sheet(12, 0.5, 0.12));
-  // Two blocks that overlap at their corners: one obstacle of two closed parts.
-  add_obstacle(w, testing::join(block({-0.05, 0, 0}, 0.06), block({0.05, 0.011, 0.013}, 0.06)));
-  const ContactWorld world = with_its_obstacle(w);
-  Points nodes = gather_nodes(w.state.x, w.state.obstacles), turned = nodes;
-  SelfCrossings crossings(world);
-  Exemption exemption;
-  crossings.switch_off(nodes, nodes, {}, exemption);
-  // Nor where it moves as one, however far.
-  const Mat3 turn = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  turned.bottomRows(16) =
-      ((nodes.bottomRows(16) * turn.transpose()).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0)).eval();
-  crossings.switch_off(nodes, turned, {}, exemption);
-  CHECK_FALSE(exemption.any());
-  const testing::Run r = testing::run(w, 30);
-  CHECK(r.state.x.allFinite());
-  CHECK(r.held == 0);
-  CHECK(r.passed_through == 0);
-  CHECK(r.pairs == 0);
-  CHECK(r.left_alone == 0);
-}
-
-TEST_CASE("recovery: cloth between parts that pass through each other is caught, and no other is", "[recovery]") {
-  const testing::Sheet upright = testing::tilted(sheet(6, 0.06, 0), 0.5 * std::numbers::pi);  // in the plane x = 0
-  testing::Sheet cloths = testing::join(upright, sheet(6, 0.2, 0.075));                       // and one on top
-  World w = make_world(cloths);
-  const testing::Sheet left = block({-0.07, 0, 0}, 0.06), right = block({0.07, 0.007, 0.009}, 0.06);
-  add_obstacle(w, testing::join(left, right));
-  const ContactWorld world = with_its_obstacle(w);
-  const Points nodes = gather_nodes(w.state.x, w.state.obstacles);
-  Points together = nodes;
-  const Eigen::Index first = world.first_node[0];
-  together.middleRows(first, 8).col(0).array() += 0.02;
-  together.middleRows(first + 8, 8).col(0).array() -= 0.02;
-  Exemption exemption;
-  SelfCrossings(world).switch_off(nodes, together, {}, exemption,
-                                  {1});  // its driver knows that it does not cross itself
-  REQUIRE(exemption.switched_off.empty());
-  SelfCrossings(world).switch_off(nodes, together, {}, exemption);
-  const auto count = upright.x.rows();
-  REQUIRE(exemption.switched_off.size() == static_cast<std::size_t>(nodes.rows()));
-  CHECK(std::count(exemption.switched_off.begin(), exemption.switched_off.begin() + count, 1) == count);
-  CHECK(std::count(exemption.switched_off.begin() + count, exemption.switched_off.begin() + cloths.x.rows(), 1) == 0);
-  const std::vector<int> counted = switched_off_counts(world, exemption);
-  CHECK(counted[0] > 0);
-  CHECK(may_be_switched_off(w.scene.obstacles[0].surface, together.bottomRows(16)).size() >=
-        static_cast<std::size_t>(counted[0]));
-  w.drive.obstacles = {together.bottomRows(16)};
-  State to;
-  CHECK(testing::frame(w.scene, *make_recovering_conventional_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to)
-            .switched_off == counted);
-  CHECK(testing::frame(w.scene, *make_icm_stepper(w.scene, {}), w.state, w.drive, 1.0 / 30, to).switched_off[0] > 0);
-  // A pair is left alone for what is caught alone.
-  const int body = static_cast<int>(first);
-  CHECK(exemption.leaves_alone(world, {0, body + 1, body + 3, body + 5}));
-  CHECK_FALSE(exemption.leaves_alone(world, {static_cast<int>(count), body + 1, body + 3, body + 5}));
-  // Blocks that move into each other elsewhere catch nothing.
-  Points apart = nodes;
-  apart.topRows(cloths.x.rows()).col(1).array() += 0.2;
-  Points apart_together = together;
-  apart_together.topRows(cloths.x.rows()) = apart.topRows(cloths.x.rows());
-  Exemption nothing;
-  SelfCrossings(world).switch_off(apart, apart_together, {}, nothing);
-  CHECK_FALSE(nothing.any());
 }
 
 TEST_CASE("recovery: all that is tangled with a body that crosses itself is drawn to its targets", "[recovery]") {

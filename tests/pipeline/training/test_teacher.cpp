@@ -292,6 +292,14 @@ TEST_CASE("teacher: shares of roll-outs begin with strong noise, or where the so
   }
   CHECK(std::abs(noisy - 90) < 30);
   CHECK(std::abs(simulated - 150) < 35);
+  options.samples.random_simulated = true;
+  double frames = 0;
+  for (std::uint64_t k = 0; k < 300; ++k) {
+    RollRequest request = draw_roll(options, maker.world, k, 1);
+    CHECK((request.simulated >= 0 && request.simulated <= 20));
+    frames += request.simulated;
+  }
+  CHECK(std::abs(frames / simulated - 10.5) < 2);
 
   RollRequest request;
   request.first_frame = 30;
