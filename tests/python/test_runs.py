@@ -96,6 +96,9 @@ def test_a_run_is_one_array_with_what_was_in_the_scene(scene_file, tmp_path):
         f"<selvedge.Trajectory: 9 frames at 30 frames a second; 1 cloth of {len(scene.rest)} vertices, "
         f"{len(scene.triangles)} triangles; 2 obstacles>"
     )
+    assert selvedge.Trajectory(run).keys() == run.keys()
+    with pytest.raises(selvedge.Error, match="run: a run is read by selvedge.read_trajectory"):
+        selvedge.Trajectory(tmp_path / "run")
 
 
 def test_a_recording_takes_the_place_of_an_earlier_run(run, scene_file, tmp_path):

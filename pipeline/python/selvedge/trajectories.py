@@ -55,6 +55,11 @@ else:
     class Trajectory(dict):
         """A run, as read_trajectory describes it: a dict whose repr says sizes."""
 
+        def __init__(self, *arrays: dict[str, object], **more: object) -> None:
+            if arrays and isinstance(arrays[0], str | os.PathLike):
+                raise Error(f"{arrays[0]}: a run is read by selvedge.read_trajectory(file)")
+            super().__init__(*arrays, **more)
+
         def __repr__(self) -> str:
             frames, vertices, _ = self["x"].shape
             cloths, triangles, obstacles = (len(self[name]) for name in ("cloths", "triangles", "obstacles"))
