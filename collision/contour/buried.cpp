@@ -56,9 +56,10 @@ std::vector<char> buried_triangles(const Surface& surface, const Points& x, cons
   return buried;
 }
 
-std::vector<char> buried_vertices(const Surface& surface, const Segments& found, const std::vector<char>& buried) {
+std::vector<char> buried_vertices(const Surface& surface, const Points& x, const Segments& found) {
   std::vector<char> marked(static_cast<std::size_t>(surface.vertex_count), 0);
-  const std::vector<char> crossing = crossing_triangles(surface, found);
+  if (found.segments.empty()) return marked;
+  const std::vector<char> crossing = crossing_triangles(surface, found), buried = buried_triangles(surface, x, found);
   for (std::size_t t = 0; t < buried.size(); ++t)
     if (crossing[t] || buried[t])
       for (const int v : surface.triangles.row(static_cast<Eigen::Index>(t))) marked[v] = 1;

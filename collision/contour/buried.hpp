@@ -11,7 +11,7 @@ namespace selvedge {
 // triangles; it faces the outside where one of these does. All 0 if all shells are open.
 std::vector<char> buried_triangles(const Surface&, const Points& x, const Segments& found);
 
-// 1 for each vertex of a triangle that crosses another (`found`) or is buried.
-std::vector<char> buried_vertices(const Surface&, const Segments& found, const std::vector<char>& buried);
+// 1 for each vertex of a triangle that crosses another or is buried; 0 everywhere if nothing crosses.
+std::vector<char> buried_vertices(const Surface&, const Points& x, const Segments& found);
 
 }  // namespace selvedge

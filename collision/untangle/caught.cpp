@@ -18,23 +18,15 @@ namespace {
 
 constexpr double rigid_tolerance = 1e-3;  // of a mean edge: largest distance of a vertex from a rigid motion
 
-// What a surface at x has inside of itself.
-struct InnerPart {
-  std::vector<char> buried;  // 1 for each buried triangle
-  std::vector<char> marked;  // 1 for each vertex of a triangle that crosses or is buried, and of those next to these; 0
-};                           // everywhere if nothing crosses
-
-InnerPart inner_part(const Surface& surface, const Points& x) {
+// Sets 1 for vertices of triangles that cross or are buried, and of triangles next to these.
+void add_crossing(const Surface& surface, const Points& x, std::vector<char>& marked) {
   const std::vector<SheetView> view{{&surface, &x}};
   const Segments found = find_segments(view);
-  InnerPart inner{buried_triangles(surface, x, found), {}};
-  inner.marked.assign(static_cast<std::size_t>(surface.vertex_count), 0);
-  if (found.segments.empty()) return inner;
-  const std::vector<char> own = buried_vertices(surface, found, inner.buried);
+  if (found.segments.empty()) return;
+  const std::vector<char> crossed = buried_vertices(surface, x, found);
   for (const auto& corners : surface.triangles.rowwise())
-    if (own[corners[0]] || own[corners[1]] || own[corners[2]])
-      for (const int v : corners) inner.marked[v] = 1;
-  return inner;
+    if (crossed[corners[0]] || crossed[corners[1]] || crossed[corners[2]])
+      for (const int v : corners) marked[v] = 1;
 }
 
 Vec3 normal_of(const std::array<Vec3, 3>& at) { return (at[1] - at[0]).cross(at[2] - at[0]).normalized(); }
@@ -50,18 +42,17 @@ Mat3 frame_of(const std::array<Vec3, 3>& at) {
 // An obstacle at the start and the end of a step, a part of which may be switched off.
 class Closing {
  public:
-  // `part` and `buried`: 1 for each triangle that may be switched off, and for each that is buried at the start.
-  Closing(const Surface& surface, const Points& x0, const Points& x1, std::vector<char> part, std::vector<char> buried,
-          double reach)
+  // `part`: 1 for each triangle that may be switched off.
+  Closing(const Surface& surface, const Points& x0, const Points& x1, std::vector<char> part, double reach)
       : surface_(surface),
         x0_(x0),
         x1_(x1),
         part_(std::move(part)),
-        buried_(std::move(buried)),
         reach_(reach),
         start_(make_face_tree(surface, x0, all_faces(surface))),
         end_(make_face_tree(surface, x1, all_faces(surface))) {}
 
+  double reach() const { return reach_; }
   bool is_near_part(const Vec3& p, double within) const {
     return nearest_face(start_, p, within, [this](int t) { return part_[t] != 0; }).face >= 0;
   }
@@ -72,18 +63,17 @@ class Closing {
     Vec3 to;
   };
   // p moves with the nearest face that it is in front of, or with the nearest one above it that faces that one: of two
-  // parts that close on p either may be the one that moves. A dressed p may also be taken through a face that was
-  // buried, whichever side that one faces: a limb that comes out of the body below p.
-  std::vector<Passage> passages(const Vec3& p, bool dressed) const {
+  // parts that close on p either may be the one that moves.
+  std::vector<Passage> passages(const Vec3& p) const {
     std::vector<Passage> found;
     const NearestFace own = nearest_face(start_, p, reach_, [this, &p](int t) { return side(x0_, t, p) > 0; });
     if (own.face < 0) return found;
-    add_passage(own, p, dressed, found);
+    add_passage(own, p, found);
     const Vec3 normal = normal_of(corners_of(surface_, x0_, own.face));
     const NearestFace opposite = nearest_face(start_, p, reach_, [&](int t) {
       return side(x0_, t, p) > 0 && normal_of(corners_of(surface_, x0_, t)).dot(normal) < facing_cosine;
     });
-    if (opposite.face >= 0 && is_above(opposite, p)) add_passage(opposite, p, dressed, found);
+    if (opposite.face >= 0 && is_above(opposite, p)) add_passage(opposite, p, found);
     return found;
   }
 
@@ -94,11 +84,11 @@ class Closing {
     return faces;
   }
 
-  void add_passage(const NearestFace& by, const Vec3& p, bool dressed, std::vector<Passage>& found) const {
+  void add_passage(const NearestFace& by, const Vec3& p, std::vector<Passage>& found) const {
     const Vec3 to = carried(by, p), normal = normal_of(corners_of(surface_, x1_, by.face));
     const auto gone_through = [&](int t) {
       return (part_[t] || part_[by.face]) && side(x0_, t, p) > 0 && side(x1_, t, to) < 0 &&
-             ((dressed && buried_[t]) || normal_of(corners_of(surface_, x1_, t)).dot(normal) < facing_cosine);
+             normal_of(corners_of(surface_, x1_, t)).dot(normal) < facing_cosine;
     };
     const NearestFace other = nearest_face(end_, to, reach_, gone_through);
     if (other.face >= 0) found.push_back({other.face, to});
@@ -129,7 +119,7 @@ class Closing {
 
   const Surface& surface_;
   const Points &x0_, &x1_;
-  std::vector<char> part_, buried_;
+  std::vector<char> part_;
   double reach_;  // largest motion of the part in the step, plus a mean edge [m]
   FaceTree start_, end_;
 };
@@ -142,15 +132,21 @@ std::vector<char> marked_faces(const Surface& body, const std::vector<char>& mar
   return faces;
 }
 
-// Marks vertices of the cloth, except `tangled` ones, that the motion of the body catches.
+// Marks vertices of the cloth, except `tangled` ones, that the motion of the body catches, and dressed ones near the
+// part whose skinned targets it takes into the body.
 void catch_anew(const Surface& body, const Points& x1, const Closing& closing, const Points& cloth,
-                const std::vector<char>& tangled, const std::vector<char>& dressed, std::vector<char>& caught) {
+                const std::vector<char>& tangled, const std::vector<char>& dressed, const Points& targets,
+                std::vector<char>& caught) {
   const std::vector<char> closed = closed_shells(body);
-  std::vector<int> into;  // vertices that would pass through a face of a closed shell
+  std::vector<int> into;  // vertices that are caught if their places are in the body
   std::vector<Vec3> places;
   for (int v = 0; v < cloth.rows(); ++v) {
     if (!cloth.row(v).allFinite() || (!tangled.empty() && tangled[v])) continue;
-    for (const Closing::Passage& passage : closing.passages(row(cloth, v), dressed[v] != 0)) {
+    if (dressed[v] && closing.is_near_part(row(cloth, v), closing.reach())) {
+      into.push_back(v);
+      places.push_back(row(targets, v));
+    }
+    for (const Closing::Passage& passage : closing.passages(row(cloth, v))) {
       if (!closed[body.component[body.triangles(passage.face, 0)]]) {
         caught[v] = 1;
         continue;
@@ -169,7 +165,9 @@ void catch_anew(const Surface& body, const Points& x1, const Closing& closing, c
 }  // namespace
 
 std::vector<int> may_be_switched_off(const Surface& surface, const Points& x) {
-  const std::vector<char> part = marked_faces(surface, inner_part(surface, x).marked);
+  std::vector<char> marked(static_cast<std::size_t>(surface.vertex_count), 0);
+  add_crossing(surface, x, marked);
+  const std::vector<char> part = marked_faces(surface, marked);
   std::vector<int> faces;
   for (int t = 0; t < static_cast<int>(part.size()); ++t)
     if (part[t]) faces.push_back(t);
@@ -194,18 +192,19 @@ void switch_off(const ContactWorld& world, int obstacle, const Points& from, con
   const std::vector<char>& tangled = exemption.body;
   const bool rigid = moves_rigidly(body, x0, x1);
   if (rigid && (tangled.empty() || targets.rows() == 0)) return;
-  InnerPart before = inner_part(body, x0);
-  const std::vector<char> marked = either(std::move(before.marked), inner_part(body, x1).marked);
+  std::vector<char> marked(static_cast<std::size_t>(body.vertex_count), 0);
+  add_crossing(body, x0, marked);
+  add_crossing(body, x1, marked);
   std::vector<char> part = marked_faces(body, marked);
   if (std::ranges::find(part, 1) == part.end()) return;
   double motion = 0;
   for (std::size_t v = 0; v < marked.size(); ++v)
     if (marked[v]) motion = std::max(motion, (x1.row(v) - x0.row(v)).norm());
   const double edge = mean_edge(*world.cloth, cloth);
-  const Closing closing(body, x0, x1, std::move(part), std::move(before.buried), motion + edge);
+  const Closing closing(body, x0, x1, std::move(part), motion + edge);
   std::vector<char> caught(static_cast<std::size_t>(cloth.rows()), 0), dressed = caught;
   for (Eigen::Index v = 0; v < targets.rows(); ++v) dressed[v] = targets.row(v).allFinite();
-  if (!rigid) catch_anew(body, x1, closing, cloth, tangled, dressed, caught);
+  if (!rigid) catch_anew(body, x1, closing, cloth, tangled, dressed, targets, caught);
   for (std::size_t v = 0; v < tangled.size(); ++v)
     if (tangled[v] && dressed[v]) caught[v] = closing.is_near_part(row(cloth, static_cast<int>(v)), edge);
   if (std::ranges::find(caught, 1) == caught.end()) return;

@@ -10,13 +10,13 @@ namespace selvedge {
 // For an obstacle that moves from its nodes in `from` to those in `to` and crosses itself at either end. A vertex of
 // the cloth is caught if the face in front of which it lies, moving with the body, takes it through another face that
 // faces the first, of which at least one is near a crossing; or if the nearest face opposite to that one does so.
-// Through a face of a closed shell it is caught only if it ends inside. A dressed vertex (one that a body wears) is
-// caught also by a limb that was inside of the body and comes out below it: pushed out it would hang on the limb, and
-// its pins away from the body. An obstacle that keeps its shape catches no further vertices: its parts do not pass
-// through each other. A vertex that is tangled with obstacles (`exemption.body`) within an edge of the crossing is
-// caught too if it is dressed. `targets`: skinned targets, one row for each vertex, NaN where no body wears it; or
-// empty. Marks caught vertices in exemption.switched_off, and if there are any also the obstacle's triangles that
-// cross, are buried, or are next to such.
+// Through a face of a closed shell it is caught only if it ends inside. A vertex that a body wears, and that the motion
+// may bring to the crossing, is caught also where its skinned target ends inside of a closed shell: another part of the
+// body has taken its place. An obstacle that keeps its shape catches no further vertices: its parts do not pass through
+// each other. A vertex that is tangled with obstacles (`exemption.body`) within an edge of the crossing is caught too
+// if a body wears it. `targets`: skinned targets, one row for each vertex, NaN where no body wears it; or empty. Marks
+// caught vertices in exemption.switched_off, and if there are any also the obstacle's triangles that cross, are buried,
+// or are next to such.
 void switch_off(const ContactWorld&, int obstacle, const Points& from, const Points& to, const Points& targets,
                 Exemption& exemption);
 

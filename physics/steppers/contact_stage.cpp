@@ -1,7 +1,9 @@
 #include "physics/steppers/contact_stage.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "collision/contact/pins_give_way.hpp"
 #include "physics/scene/features.hpp"
 
 namespace selvedge {
@@ -26,6 +28,20 @@ ResolveOptions resolve_options(const Scene& scene, ResolveOptions options) {
   return options;
 }
 
+// What contact leaves alone, and pairs of bodies with the pins that they carry.
+Exemption left_alone_by_pins(const ContactWorld& world, std::span<const int> pins, const Drive& drive,
+                             Exemption left_alone) {
+  const Points& targets = drive.skinned_targets;
+  if (targets.rows() == 0) return left_alone;
+  std::vector<char> carried(static_cast<std::size_t>(world.node_count), 0);
+  for (const int pin : pins) carried[pin] = targets.row(pin).allFinite();
+  for (std::size_t k = 0; k < drive.bodies.size(); ++k)
+    if (drive.bodies[k].is_body())
+      std::fill_n(carried.begin() + world.first_node[k], world.obstacles[k]->vertex_count, 1);
+  left_alone.switched_off = either(std::move(carried), left_alone.switched_off);
+  return left_alone;
+}
+
 }  // namespace
 
 ContactStage::ContactStage(const Scene& scene, const ResolveOptions& limits)
@@ -39,6 +55,18 @@ void ContactStage::leave_alone(const Exemption* exemption) {
   if (exempt || any) path = {};  // the list was made with other pairs left out
   exempt = any;
   search.leave_out(any ? exemption : nullptr);
+}
+
+int pins_give_way(ContactStage& stage, std::span<const int> pins, const ResolveOptions& options, const Drive& drive,
+                  const Exemption& left_alone, const Points& x0, Points& x1, ResolveReport& report) {
+  const Exemption by_pins = left_alone_by_pins(stage.world, pins, drive, left_alone);
+  struct Restore {
+    ~Restore() { search.leave_out(before); }
+    PairSearch& search;
+    const Exemption* before;
+  } restore{stage.search, left_alone.any() ? &left_alone : nullptr};
+  stage.search.leave_out(&by_pins);
+  return pins_give_way(stage.search, stage.world, pins, options, x0, x1, report);
 }
 
 void add(const ResolveReport& resolved, StepReport& report) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "collision/contact/resolve.hpp"
@@ -26,6 +27,12 @@ struct ContactStage {
   PathPairs path;                // pairs near the last motion
   bool exempt = false;           // pairs were left out when `path` was made
 };
+
+// pins_give_way.hpp of the scene's pins, but those that a body carries (with skinned targets) give way to no body. A
+// limb that pushed them off would take the cloth along, and could keep it away for ever. `left_alone`: by contact of
+// the step.
+int pins_give_way(ContactStage&, std::span<const int> pins, const ResolveOptions&, const Drive&,
+                  const Exemption& left_alone, const Points& x0, Points& x1, ResolveReport&);
 
 // Adds counts and times of a response to the report.
 void add(const ResolveReport&, StepReport&);

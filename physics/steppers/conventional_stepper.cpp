@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "collision/contact/pins_give_way.hpp"
 #include "collision/contact/room.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "collision/geometry/stopwatch.hpp"
@@ -165,8 +164,8 @@ bool ConventionalStepper::solve_freely(StepWork& work, Substep& s, const StepSta
 void ConventionalStepper::hold_pins(StepWork& work, Substep& s, Points& pins) {
   Points nodes = s.nodes;
   ResolveReport report;
-  const int held =
-      pins_give_way(contact_.search, contact_.world, scene_.pins, resolve_options(work), s.start.nodes, nodes, report);
+  const int held = pins_give_way(contact_, scene_.pins, resolve_options(work), work.drive, work.left_alone,
+                                 s.start.nodes, nodes, report);
   add(report, work.report);
   if (held == 0) return;
   ++work.report.collision.shortened;

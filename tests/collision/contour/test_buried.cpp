@@ -37,8 +37,7 @@ Sheet ring(double thin, const Vec3& centre) {
 std::vector<char> buried(const Sheet& s) {
   const Surface surface = make_surface(static_cast<int>(s.x.rows()), s.triangles);
   const std::vector<SheetView> view{{&surface, &s.x}};
-  const Segments found = find_segments(view);
-  return buried_vertices(surface, found, buried_triangles(surface, s.x, found));
+  return buried_vertices(surface, s.x, find_segments(view));
 }
 
 std::vector<char> inside(const Sheet& body, const Points& points) {

@@ -85,7 +85,8 @@ TEST_CASE("caught: cloth between parts that pass through each other is caught, a
   CHECK_FALSE(nothing.any());
 }
 
-TEST_CASE("caught: a limb that comes out of the body catches what it comes out below, if that is dressed", "[caught]") {
+TEST_CASE("caught: a limb that comes out of the body catches dressed cloth whose place it takes, and no other",
+          "[caught]") {
   const testing::Sheet cloth = sheet(20, 0.2, 0.065);
   World w = make_world(cloth);
   add_obstacle(w, testing::join(block({0, 0, 0}, 0.06), block({0.011, 0.03, 0.007}, 0.02)));

@@ -196,6 +196,36 @@ TEST_CASE("conventional stepper: pins of one cloth that are brought to one place
   CHECK(state.v.rowwise().norm().maxCoeff() > 0);
 }
 
+TEST_CASE("conventional stepper: pins that a body carries stay on it where a limb comes at them, others give way",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(8, 0.2, 0.05));
+  add_obstacle(w, testing::block({0, 0, 0.1}, 0.03));
+  for (int v = 0; v < w.state.x.rows(); ++v)
+    if (w.state.x(v, 2) > 0.099) w.scene.pins.push_back(v);
+  REQUIRE(w.scene.pins.size() == 9);
+  const Points at = w.state.x(w.scene.pins, Eigen::all);
+  w.drive.pins = at;
+  for (const bool worn : {true, false}) {
+    const auto stepper = testing::conventional(w.scene);
+    State state = w.state, to;
+    Drive drive = w.drive;
+    if (worn) {
+      drive.skinned_targets = w.state.x;
+      drive.bodies.resize(1);
+      drive.bodies[0].joints = Points::Zero(1, 3);
+    }
+    double off = 0;
+    for (int f = 1; f <= 8; ++f) {
+      drive.obstacles[0].col(1).array() += 0.01;  // its top from 2 cm below the pins to 6 cm above
+      REQUIRE(testing::frame(w.scene, *stepper, state, drive, 1.0 / 30, to).status == StepStatus::accepted);
+      std::swap(state, to);
+      off = std::max(off, (state.x(w.scene.pins, Eigen::all) - at).rowwise().norm().maxCoeff());
+    }
+    INFO("worn " << worn);
+    CHECK((worn ? off == 0 : off > 0.05));
+  }
+}
+
 TEST_CASE("conventional stepper: caches carry no state", "[conventional_stepper]") {
   const World w = folding_world(10);
   const Run kept = run(w, 20), dropped = run(w, 20, 3);
