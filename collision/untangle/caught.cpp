@@ -96,10 +96,10 @@ class Closing {
 
   // Does p lie in front of the face at the start, and not beside it?
   bool is_above(const NearestFace& by, const Vec3& p) const {
-    constexpr double steepest = 0.7;  // cosine of 45 degrees
+    constexpr double least_cosine = 0.7;  // of 45 degrees
     const std::array<Vec3, 3> at = corners_of(surface_, x0_, by.face);
     const Vec3 off = p - by.weight[0] * at[0] - by.weight[1] * at[1] - by.weight[2] * at[2];
-    return normal_of(at).dot(off) > steepest * off.norm();
+    return normal_of(at).dot(off) > least_cosine * off.norm();
   }
 
   double side(const Points& x, int t, const Vec3& p) const {

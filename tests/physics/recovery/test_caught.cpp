@@ -18,6 +18,24 @@ using testing::sheet;
 using testing::with_its_obstacle;
 using testing::World;
 
+namespace {
+
+constexpr double hand_x = 0.011, hand_z = 0.007, hand_half = 0.02;
+
+// A sheet at one height, and a body of two blocks: a thigh of 12 cm round the origin, and a hand of 4 cm at `hand`.
+World sheet_and_hand(double height, double hand) {
+  World w = make_world(sheet(20, 0.2, height));
+  add_obstacle(w, testing::join(block({0, 0, 0}, 0.06), block({hand_x, hand, hand_z}, hand_half)));
+  return w;
+}
+
+// The larger of the vertex's distances along x and z from the hand's axis: at most hand_half above or below the hand.
+double off_hand(const World& w, int v) {
+  return std::max(std::abs(w.state.x(v, 0) - hand_x), std::abs(w.state.x(v, 2) - hand_z));
+}
+
+}  // namespace
+
 TEST_CASE("caught: a still body that crosses itself keeps what comes from outside out", "[caught]") {
   World w = make_world(sheet(12, 0.5, 0.12));
   // Two blocks that overlap at their corners: one obstacle of two closed parts.
@@ -87,9 +105,7 @@ TEST_CASE("caught: cloth between parts that pass through each other is caught, a
 
 TEST_CASE("caught: a limb that comes out of the body catches dressed cloth whose place it takes, and no other",
           "[caught]") {
-  const testing::Sheet cloth = sheet(20, 0.2, 0.065);
-  World w = make_world(cloth);
-  add_obstacle(w, testing::join(block({0, 0, 0}, 0.06), block({0.011, 0.03, 0.007}, 0.02)));
+  const World w = sheet_and_hand(0.065, 0.03);
   const ContactWorld world = with_its_obstacle(w);
   const Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   Points out = nodes;
@@ -99,32 +115,31 @@ TEST_CASE("caught: a limb that comes out of the body catches dressed cloth whose
   CHECK_FALSE(loose.any());  // what comes from outside meets all of the body
   SelfCrossings(world).switch_off(nodes, out, w.state.x, worn);
   REQUIRE_FALSE(worn.switched_off.empty());
-  for (int v = 0; v < cloth.x.rows(); ++v) {
-    const double off = std::max(std::abs(cloth.x(v, 0) - 0.011), std::abs(cloth.x(v, 2) - 0.007));
-    if (std::abs(off - 0.02) > 1e-3) CHECK((worn.switched_off[v] != 0) == (off < 0.02));
+  for (int v = 0; v < w.state.x.rows(); ++v) {
+    const double off = off_hand(w, v);
+    if (std::abs(off - hand_half) > 1e-3) CHECK((worn.switched_off[v] != 0) == (off < hand_half));
   }
 }
 
 TEST_CASE("caught: cloth is caught where a part moves over it that lies on one that does not cross yet", "[caught]") {
-  // A hand of 4 cm goes into a thigh of 12 cm by 3 cm, through cloth that lies on the thigh 1 mm off.
-  const testing::Sheet cloth = sheet(20, 0.2, 0.061);
-  World w = make_world(cloth);
-  add_obstacle(w, testing::join(block({0, 0, 0}, 0.06), block({0.011, 0.1, 0.007}, 0.02)));
+  // The hand goes into the thigh by 3 cm, through cloth that lies on the thigh 1 mm off.
+  const World w = sheet_and_hand(0.061, 0.1);
   const ContactWorld world = with_its_obstacle(w);
   const Points nodes = gather_nodes(w.state.x, w.state.obstacles);
   Points into = nodes;
   into.bottomRows(8).col(1).array() -= 0.05;
-  for (const bool still_thigh : {true, false}) {  // the thigh is what moves, or the hand
+  for (const bool still_thigh : {true, false}) {  // the hand is what moves, or the thigh
     Points to = into;
     if (!still_thigh) to.bottomRows(16).col(1).array() += 0.05;
     Exemption exemption;
     SelfCrossings(world).switch_off(nodes, to, {}, exemption);
     REQUIRE_FALSE(exemption.switched_off.empty());
-    for (int v = 0; v < cloth.x.rows(); ++v) {
-      const double off = std::max(std::abs(cloth.x(v, 0) - 0.011), std::abs(cloth.x(v, 2) - 0.007));
+    for (int v = 0; v < w.state.x.rows(); ++v) {
+      const double off = off_hand(w, v);
       INFO("thigh still " << still_thigh << ", vertex " << v << ", " << off);
-      if (off < 0.019) CHECK(exemption.switched_off[v] != 0);
-      if (off > 0.04) CHECK(exemption.switched_off[v] == 0);  // beside the hand; between these it may be pinched
+      if (off < hand_half - 1e-3) CHECK(exemption.switched_off[v] != 0);
+      if (off > 2 * hand_half)
+        CHECK(exemption.switched_off[v] == 0);  // beside the hand; between these it may be pinched
     }
   }
 }
