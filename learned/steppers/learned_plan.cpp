@@ -38,6 +38,11 @@ std::vector<PlanLine> learned_plan_lines(const Scene& scene, const Architecture&
                    architecture.name + ", " + std::to_string(parameter_count(architecture)) + " parameters, " +
                        std::to_string(architecture.steps.size()) + " message-passing steps"});
   lines.push_back(settling_line(architecture, learned.settle));
+  if (options.base == OutputBase::carried)
+    lines.push_back({"step lengths", learned.step_lengths,
+                     learned.step_lengths
+                         ? "the output is followed as far as the solver's forces agree"
+                         : "the whole output is taken, by run.learned.step_lengths or before a solve"});
   lines.push_back({"libtorch", learned.device != NetworkDevice::cpu, device_sentence(learned.device)});
   if (learned.device == NetworkDevice::cpu) {
     const bool whole = kernels_of(learned.numbers) == InstructionSet::vnni;

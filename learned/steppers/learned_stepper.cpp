@@ -13,6 +13,7 @@
 #include "learned/network/packed_network.hpp"
 #include "learned/steppers/learned_scene.hpp"
 #include "learned/steppers/learned_state.hpp"
+#include "learned/steppers/step_lengths.hpp"
 #include "physics/frame/bounded_step.hpp"
 #include "physics/scene/joint_lists.hpp"
 #include "physics/solve/energy_balance.hpp"
@@ -34,11 +35,12 @@ class LearnedStepper final : public Stepper {
         passes_(architecture.passes),
         settles_(may_settle(architecture) &&
                  (options.settle || architecture.integration == Integration::relaxation_frame)),
+        follows_(architecture.features.base == OutputBase::carried && options.step_lengths),
         tables_(weights.tables),
         network_(pack_network(architecture, weights, kernels_of(options.numbers))),
         torch_(torch_network_for(options.device, architecture, weights)),
         graph_scene_(learned_scene(scene, options.omitted_body_vertices).graph),
-        elastic_(features_.guess_inputs ? make_elastic(scene) : Elastic{}),
+        elastic_(features_.guess_inputs || follows_ ? make_elastic(scene) : Elastic{}),
         losses_(features_.force_inputs ? loss_garment(scene) : LossGarment{}),
         rest_(make_rest_graph(graph_scene_, features_, options.centres)),
         traits_(learned_traits(architecture)),
@@ -62,11 +64,12 @@ class LearnedStepper final : public Stepper {
   Integration integration_;
   int passes_;
   bool settles_;
+  bool follows_;  // the output only as far as the solver's forces agree
   FeatureTables tables_;
   std::shared_ptr<const PackedNetwork> network_;
   std::unique_ptr<TorchNetwork> torch_;  // in place of the kernels
   GraphScene graph_scene_;
-  Elastic elastic_;     // of networks that see the elastic forces
+  Elastic elastic_;     // of networks that see the elastic forces, or follow them
   LossGarment losses_;  // of networks with the objective's force as an input
   RestGraph rest_;
   StepperTraits traits_;
@@ -104,8 +107,11 @@ bool LearnedStepper::predict(GraphState state, NextCloth& next, StepReport& repo
     if (!found_.refused.empty()) return false;
     const FeatureRows output = torch_ ? torch_->infer(graph_) : infer(*network_, graph_, engine_);
     next = integrate(rest_, state, features_, tables_.output, output);
-    report.seconds.network += watch.lap();
     if (!is_near(next.x) || !is_near(next.velocity)) return false;
+    if (follows_)
+      take_lengths({elastic_, graph_scene_, rest_, features_, scene_.contact.thickness}, state, found_.body_pairs,
+                   scratch_, next);
+    report.seconds.network += watch.lap();
     if (state.pass + 1 < passes_) state.guess = next.x;
   }
   return true;

@@ -17,6 +17,7 @@ struct LearnedOptions {
   std::vector<int> centres = {};                // centres of coarse levels, at most one per piece; others are chosen
   NetworkDevice device = NetworkDevice::cpu;
   NetworkNumbers numbers = NetworkNumbers::float32;  // of the CPU's kernels
+  bool step_lengths = true;  // follows an output beside the carried guess as far as the solver's forces agree
 };
 
 // Whether a roll-out may begin with a settling pass: a network that adds to the carried guess takes the cloth as

@@ -12,7 +12,6 @@ namespace selvedge {
 namespace {
 
 constexpr double standard_gravity = 9.81;  // [m/s2]
-constexpr double contact_reach = 2;        // Contact may push a vertex within this many thicknesses.
 
 double total(const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 

@@ -47,7 +47,11 @@ const Options<LearnedRun>& learned_options() {
               "torch`). `cuda`: libtorch on a GPU. `auto`: `cuda` where there is a GPU, else `cpu`."),
        choice("numbers", &O::numbers, network_numbers(),
               "Numbers that the device `cpu` multiplies. `int16`: integers of 16 bits with a scale for each row, on "
-              "processors with AVX-512 VNNI. `auto`: those where the processor has them, else `float32`.")});
+              "processors with AVX-512 VNNI. `auto`: those where the processor has them, else `float32`."),
+       flag("step_lengths", &O::step_lengths,
+            "Of a network whose output is added to the carried guess (`student`). True: the smooth and the rough part "
+            "of the output are each followed as far as the incremental potential falls. False: the whole output is "
+            "taken, as it always is before a rough solve (`run.hybrid.mode: rough`).")});
   return table;
 }
 

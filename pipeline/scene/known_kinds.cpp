@@ -106,27 +106,29 @@ LearnedOptions learned_options(const Setup& setup) {
           .omitted_body_vertices = {},
           .centres = {},
           .device = setup.run.learned.device,
-          .numbers = setup.run.learned.numbers};
+          .numbers = setup.run.learned.numbers,
+          .step_lengths = setup.run.learned.step_lengths};
 }
 
-MakeStepper learned_maker(const Setup& setup) {
+MakeStepper learned_maker(const Setup& setup, const LearnedOptions& options) {
   const std::shared_ptr<const WeightFile> network(setup.networks, &network_of(setup));
-  return [network, options = learned_options(setup)](const Scene& scene) {
+  return [network, options](const Scene& scene) {
     return make_learned_stepper(scene, network->architecture, network->weights, options);
   };
 }
 
-std::vector<PlanLine> learned_lines(const Setup& setup) {
+std::vector<PlanLine> network_lines(const Setup& setup, const LearnedOptions& options) {
   const Architecture& architecture = network_of(setup).architecture;
   StepperTraits traits = learned_traits(architecture);
   traits.name = setup.kind.name;
   check_accepted(setup, traits);
-  return learned_plan_lines(setup.scene, architecture, learned_options(setup));
+  return learned_plan_lines(setup.scene, architecture, options);
 }
 
 StepperKind learned_kind() {
-  StepperKind kind{.name = "learned", .network = NetworkUse::alone, .plan = learned_lines};
-  kind.maker = [](const Setup& setup, const Config&) { return learned_maker(setup); };
+  StepperKind kind{.name = "learned", .network = NetworkUse::alone};
+  kind.plan = [](const Setup& setup) { return network_lines(setup, learned_options(setup)); };
+  kind.maker = [](const Setup& setup, const Config&) { return learned_maker(setup, learned_options(setup)); };
   return kind;
 }
 
@@ -135,18 +137,25 @@ std::unique_ptr<Stepper> conventional_part(const Scene& scene, const Conventiona
   return decorated(scene, conventional_maker(options), {.recovery = recovery});
 }
 
+// A solve that begins at the whole output ends nearer than one from where lengths lead (docs/results/hybrid.md).
+LearnedOptions proposer_options(const Setup& setup) {
+  LearnedOptions options = learned_options(setup);
+  options.step_lengths = options.step_lengths && setup.run.hybrid.mode != HybridMode::rough;
+  return options;
+}
+
 MakeStepper hybrid_maker(const Setup& setup) {
-  return
-      [options = setup.run.hybrid, learned = learned_maker(setup), features = network_of(setup).architecture.features,
-       conventional = setup.run.conventional, recovery = setup.run.recovery](const Scene& scene) {
-        HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
-        if (options.mode == HybridMode::rough)
-          parts.refiner = conventional_part(scene, one_rough_solve(conventional), recovery);
-        parts.hand_over = [features](const State& from, const Drive& drive, State& to) {
-          carry_frame(features, from, drive, to);
-        };
-        return make_hybrid_stepper(scene, std::move(parts), options);
-      };
+  return [options = setup.run.hybrid, learned = learned_maker(setup, proposer_options(setup)),
+          features = network_of(setup).architecture.features, conventional = setup.run.conventional,
+          recovery = setup.run.recovery](const Scene& scene) {
+    HybridParts parts{learned(scene), conventional_part(scene, conventional, recovery)};
+    if (options.mode == HybridMode::rough)
+      parts.refiner = conventional_part(scene, one_rough_solve(conventional), recovery);
+    parts.hand_over = [features](const State& from, const Drive& drive, State& to) {
+      carry_frame(features, from, drive, to);
+    };
+    return make_hybrid_stepper(scene, std::move(parts), options);
+  };
 }
 
 // What proposes, what becomes of it, and what the network leaves out.
@@ -163,7 +172,7 @@ std::vector<PlanLine> hybrid_lines(const Setup& setup) {
       {"proposals by time", hybrid.stop_when_slow,
        hybrid.stop_when_slow ? "none where they cost more than they save: frames depend on the clock"
                              : "not asked for by run.hybrid.stop_when_slow"}};
-  for (const PlanLine& line : learned_lines(setup))
+  for (const PlanLine& line : network_lines(setup, proposer_options(setup)))
     if (line.feature != "settling pass") lines.push_back({"proposal: " + line.feature, line.in, line.why});
   return lines;
 }

@@ -17,6 +17,7 @@ struct LearnedRun {
   bool settle = false;
   NetworkDevice device = NetworkDevice::cpu;
   NetworkNumbers numbers = NetworkNumbers::float32;
+  bool step_lengths = true;
 };
 
 // The repulsive layer behind the stepper (learned/steppers/refu_stepper.hpp). Members are described where keys are

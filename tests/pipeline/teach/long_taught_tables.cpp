@@ -29,7 +29,8 @@ namespace selvedge::long_taught_tables {
 // minutes for each outfit and clip. The solver makes its run as it makes the targets of a training (`converged`).
 // SELVEDGE_WEIGHTS: the network; SELVEDGE_FITTED: coefficients by `selvedge teach`, where OUTFIT in the name stands for
 // the outfit's; rows without a file are left out.
-// SELVEDGE_TAUGHT_OUTFITS, SELVEDGE_TAUGHT_CLIPS: with commas between. SELVEDGE_TAUGHT_FRAMES: of the solver's run.
+// SELVEDGE_TAUGHT_OUTFITS, SELVEDGE_TAUGHT_CLIPS: with commas between. SELVEDGE_TAUGHT_ROWS: those alone, with
+// semicolons between. SELVEDGE_TAUGHT_FRAMES: of the solver's run.
 // SELVEDGE_TAUGHT_EVERY: every so many of its states, which are 10 frames apart, begins a roll-out.
 
 namespace {
@@ -41,9 +42,9 @@ std::string given(const char* name, const std::string& otherwise) {
   return text ? text : otherwise;
 }
 
-std::vector<std::string> names_in(const std::string& text) {
+std::vector<std::string> names_in(const std::string& text, char between = ',') {
   std::vector<std::string> names(1);
-  for (const char c : text) c == ',' ? (void)names.emplace_back() : names.back().push_back(c);
+  for (const char c : text) c == between ? (void)names.emplace_back() : names.back().push_back(c);
   return names;
 }
 
@@ -72,6 +73,8 @@ std::vector<Row> rows(const std::string& outfit) {
   if (!weights.empty()) all.push_back({"student, rough solve", hybrid("rough"), true});
   all.push_back({"draft", {"run.stepper=conventional", "run.quality=draft"}});
   all.push_back({"preview", {"run.stepper=conventional", "run.quality=preview"}});
+  if (const std::string wanted = given("SELVEDGE_TAUGHT_ROWS", ""); !wanted.empty())
+    std::erase_if(all, [&](const Row& row) { return std::ranges::count(names_in(wanted, ';'), row.name) == 0; });
   return all;
 }
 
