@@ -65,7 +65,12 @@ std::vector<Row> rows(const std::string& outfit) {
   };
   std::vector<Row> all{{"carried", {"run.stepper=carried"}}};
   if (!fitted.empty()) all.push_back({"fitted", {"run.stepper=carried_fitted", "run.learned.weights=" + fitted}});
-  if (!weights.empty()) all.push_back({"student, response", hybrid("response"), true});
+  if (!weights.empty()) {
+    all.push_back({"student, response", hybrid("response"), true});
+    std::vector<std::string> whole = hybrid("response");
+    whole.push_back("run.learned.step_lengths=false");
+    all.push_back({"student, whole output, response", std::move(whole), true});
+  }
   all.push_back({"carried_rough", {"run.stepper=carried_rough"}});
   all.push_back({"carried guess, rough solve", {"run.stepper=conventional"}, false, CarriedModel{}});
   if (!fitted.empty())
@@ -232,7 +237,8 @@ TEST_CASE("taught network: distance from the solver's roll-outs, beside what lea
     for (const Measured& one : all[row.name]) add(one, sum);
     print_row(row, sum);
   }
-  for (const char* other : {"carried", "fitted"}) print_ratio("student, response", other, all);
+  for (const char* one : {"student, response", "student, whole output, response"})
+    for (const char* other : {"carried", "fitted"}) print_ratio(one, other, all);
   for (const char* other : {"carried_rough", "carried guess, rough solve", "fitted, rough solve", "draft", "preview"})
     print_ratio("student, rough solve", other, all);
 }
