@@ -21,7 +21,6 @@ struct RollingState {
   bool over = true;                        // the roll-out has ended
   std::unique_ptr<Safeguard> guard;        // filters the motion of the roll-out; null: none
   std::unique_ptr<Stepper> behind;         // runs behind the network; null: nothing does
-  bool step_lengths = false;               // before that, of the network's output (step_lengths.hpp)
   std::shared_ptr<RollSolver> solver;      // of a teacher; null: none was asked yet in this roll-out
   std::shared_future<TeacherStep> taught;  // a teacher's frame from here; invalid: none was asked for
   std::vector<char> body_left_out;         // faces of the body that meet others now or next; empty: none

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "learned/steppers/learned_state.hpp"
-#include "learned/steppers/step_lengths.hpp"
 #include "physics/steppers/conventional_stepper.hpp"
 #include "physics/steppers/recovering_stepper.hpp"
 #include "physics/steppers/response_stepper.hpp"
@@ -29,12 +28,8 @@ std::unique_ptr<Stepper> make_behind(const Scene& scene, BehindNetwork behind) {
                                             : make_conventional_stepper(scene, one_rough_solve({})));
 }
 
-bool pass_behind(const FeatureOptions& features, RollingState& state, NextCloth& next) {
+bool pass_behind(RollingState& state, NextCloth& next) {
   if (!state.behind) return true;
-  const TrainingScene& scene = *state.roll.scene;
-  if (state.step_lengths)
-    take_lengths({scene.elastic, scene.graph, scene.rest, features, scene.scene.contact.thickness}, state.now,
-                 state.found.body_pairs, state.elastic, next);
   const SolverFrame frame = solver_frame(state);
   StepExtras extras;
   extras.guess = &next.x;

@@ -18,7 +18,7 @@ SolverFrame solver_frame(const RollingState&);
 std::unique_ptr<Stepper> make_behind(const Scene&, BehindNetwork);
 
 // Lets what runs behind the network, if something does, make the state's frame from the network's one. Returns false if
-// it rejects the step. Before that the output of the network gets its step lengths, where the state says so.
-bool pass_behind(const FeatureOptions&, RollingState&, NextCloth& next);
+// it rejects the step.
+bool pass_behind(RollingState&, NextCloth& next);
 
 }  // namespace selvedge

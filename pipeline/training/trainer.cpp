@@ -174,9 +174,6 @@ Architecture trained_architecture(const TrainingOptions& options) {
                 "give passes: 1");
   const bool sees_what_changes =
       features.force_inputs || features.type_columns + features.level_columns + features.label_columns > 0;
-  if (options.pool.step_lengths && architecture.features.base != OutputBase::carried)
-    throw Error("only an output beside the carried guess has step lengths", options.name + ": pool.step_lengths",
-                "take the architecture student, or leave `pool.step_lengths` out");
   if (options.teacher.uses > 1 && (architecture.passes > 1 || sees_what_changes))
     throw Error("kept states suit networks of one pass that see no embeddings and no force of the objective",
                 options.name + ": teacher.uses",
@@ -242,7 +239,6 @@ void set_guard(const TrainingOptions& options, RollingState& state) {
   const bool wanted = options.pool.safeguarded && state.roll.request.cloth_contact;
   state.guard = wanted ? std::make_unique<Safeguard>(state.roll.scene->scene) : nullptr;
   state.behind = make_behind(state.roll.scene->scene, options.pool.behind);
-  state.step_lengths = options.pool.step_lengths;
 }
 
 double progress_of(const Trainer& trainer) { return static_cast<double>(trainer.counts.step) / trainer.options.steps; }

@@ -159,9 +159,6 @@ const Options<PoolOptions>& pool_options() {
               "What runs behind the network where a state goes on to its next frame. `response`: the response to "
               "contact, as in the stepper `carried`. `solve`: one rough solve from the network's frame, then the "
               "response, as in `carried_rough`. A roll-out ends where that rejects a frame."),
-       flag("step_lengths", &O::step_lengths,
-            "True: before what runs behind it, an output beside the carried guess gets its step lengths, as in a run "
-            "(run.learned.step_lengths)."),
        number("no_contact_share", &O::no_contact_share, Unit::none, from_0_to_1,
               "Fraction of roll-outs without edges and loss terms between cloth and cloth.")});
   return table;

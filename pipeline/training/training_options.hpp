@@ -89,7 +89,6 @@ struct PoolOptions {
   int long_frames = 150;
   bool safeguarded = false;
   BehindNetwork behind = BehindNetwork::nothing;
-  bool step_lengths = false;
   double no_contact_share = 0;
 };
 

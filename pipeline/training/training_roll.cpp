@@ -71,7 +71,7 @@ std::shared_ptr<const TrainingScene> with_graph(const RollMaker& maker, const Ro
   }
   set_springs(scene.springs, made->losses);
   made->rest = make_rest_graph(made->graph, maker.features);
-  if (maker.features.guess_inputs || maker.features.base == OutputBase::carried) made->elastic = make_elastic(scene);
+  if (maker.features.guess_inputs) made->elastic = make_elastic(scene);
   if (request.sheet != HungStart::none)
     made->losses.closed = close_surface(scene.surface, {}, scene.pins);  // it has no inside
   return made;

@@ -48,7 +48,7 @@ struct TrainingScene {
   GraphScene graph;
   RestGraph rest;
   LossGarment losses;
-  Elastic elastic;  // of networks that see the elastic forces (FeatureOptions::guess_inputs), or follow them
+  Elastic elastic;  // of networks that see the elastic forces (FeatureOptions::guess_inputs)
 };
 
 // The prepared world of a roll-out: entry k is frame first_frame - 1 + k of the clip, frames + 2 in all.

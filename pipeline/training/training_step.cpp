@@ -273,7 +273,7 @@ void advance(Trainer& trainer, const FrameMaking& making) {
     RollingState& state = *sample.state;
     const bool last_pass = state.pass + 1 == making.passes;
     if (last_pass && pool.gate > 0) sample.next = gated(making, pool.gate, sample.next, state);
-    if (last_pass && !(pass_guard(making, state, sample.next) && pass_behind(making.features, state, sample.next)))
+    if (last_pass && !(pass_guard(making, state, sample.next) && pass_behind(state, sample.next)))
       given_up[static_cast<std::size_t>(&sample - trainer.samples.data())] = 1;
     else
       take_pass(making, sample.next, pool.reset_distance, state);

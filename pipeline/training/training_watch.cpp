@@ -172,11 +172,10 @@ double taught_distance(Trainer& trainer, const TaughtRoll& taught) {
   begin_roll(taught.roll, state);
   state.behind =
       make_behind(taught.roll.scene->scene, behind == BehindNetwork::nothing ? BehindNetwork::response : behind);
-  state.step_lengths = trainer.options.pool.step_lengths;
   while (!state.over) {
     NextCloth next;
     if (!predict(trainer, making, state, next)) return HUGE_VAL;
-    if (state.pass + 1 == making.passes && !pass_behind(making.features, state, next)) return HUGE_VAL;
+    if (state.pass + 1 == making.passes && !pass_behind(state, next)) return HUGE_VAL;
     take_pass(making, next, HUGE_VAL, state);
   }
   return target_loss(taught.roll.scene->losses, taught.end, state.now.x, nullptr);

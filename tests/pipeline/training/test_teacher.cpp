@@ -262,13 +262,13 @@ TEST_CASE("teacher: what runs behind the network brings a frame out of the body"
   for (const BehindNetwork behind : {BehindNetwork::response, BehindNetwork::solve}) {
     state.behind = make_behind(scene, behind);
     NextCloth next = proposed;
-    REQUIRE(pass_behind(maker.features, state, next));
+    REQUIRE(pass_behind(state, next));
     CHECK(pairs_with_body(next.x) < pairs);  // the start of the roll-out has pairs, too, which contact leaves alone
     CHECK((next.velocity - proposed.velocity - (next.x - proposed.x)).norm() < 1e-12);
   }
   state.behind = nullptr;
   NextCloth next = proposed;
-  CHECK(pass_behind(maker.features, state, next));
+  CHECK(pass_behind(state, next));
   CHECK(next.x == proposed.x);
 }
 
