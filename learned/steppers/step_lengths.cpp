@@ -11,7 +11,7 @@
 namespace selvedge {
 namespace {
 
-constexpr int smoothing_rounds = 8;  // 3 to 20 end roll-outs within 2 % of each other (docs/results/hybrid.md)
+constexpr int smoothing_rounds = 8;  // roll-outs with 3 and with 20 end within 3 % of this (decision 41)
 
 bool moves(const GraphScene& scene, Eigen::Index v) {
   const auto at = static_cast<std::size_t>(v);
@@ -50,8 +50,8 @@ struct Quadratic {
   std::array<std::array<double, 2>, 2> bend{};
 };
 
-// Its least point for lengths from 0 to 1: each in turn for the given other one. The whole output where nothing is known
-// of it.
+// Its least point for lengths from 0 to 1: each in turn for the given other one. The whole output where nothing is
+// known of it.
 std::array<double, 2> least_lengths(const Quadratic& potential) {
   constexpr int rounds = 50;  // of which ten suffice unless both parts are nearly the same
   std::array<double, 2> length{1, 1};
@@ -84,8 +84,9 @@ std::vector<char> near_body(const LengthScene& scene, const GraphState& state, s
 }
 
 // One for each component.
-std::vector<Quadratic> quadratics_of(const LengthScene& scene, const GraphState& state, const std::vector<char>& touching,
-                             const Points& guess, const std::array<Points, 2>& part, AssemblyScratch& scratch) {
+std::vector<Quadratic> quadratics_of(const LengthScene& scene, const GraphState& state,
+                                     const std::vector<char>& touching, const Points& guess,
+                                     const std::array<Points, 2>& part, AssemblyScratch& scratch) {
   const GraphScene& graph = scene.graph;
   const auto forces = [&](const Points& x) {
     return unbalanced(state, x, elastic_motion(scene.elastic, graph, state.timestep, x, scratch));
