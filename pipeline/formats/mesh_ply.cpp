@@ -274,6 +274,7 @@ Mesh parse_ply(std::string_view text, const std::string& name) {
   for (const Element& element : elements) {
     check_size(r, element);
     if (element.name == "vertex") {
+      if (mesh.x.rows() > 0) r.fail("has two elements `vertex`", "leave one of them in the header, with its rows");
       read_vertices(r, element, mesh);
     } else if (element.name == "face") {
       read_faces(r, element, mesh);

@@ -175,6 +175,20 @@ void read_motion(Reader& r, BvhFile& bvh) {
     for (int c = 0; c < columns; ++c) bvh.motion(f, c) = r.bounded("a number of the motion");
 }
 
+// Where the position channels of a joint count from.
+Vec3 channels_from(const BvhFile& bvh, const BvhJoint& joint) {
+  if (joint.parent < 0 || bvh.motion.rows() == 0) return joint.offset;
+  Vec3 first = Vec3::Zero();
+  int count = 0;
+  for (std::size_t c = 0; c < joint.channels.size(); ++c)
+    if (const int kind = static_cast<int>(joint.channels[c]); kind < 3) {
+      first[kind] = bvh.motion(0, joint.first_channel + static_cast<int>(c));
+      ++count;
+    }
+  const bool whole = count == 3 && (first - joint.offset).norm() < 0.5 * joint.offset.norm();
+  return whole ? Vec3::Zero() : joint.offset;
+}
+
 }  // namespace
 
 BvhFile parse_bvh(std::string_view text, const std::string& name) {
@@ -189,19 +203,23 @@ BvhFile parse_bvh(std::string_view text, const std::string& name) {
 
 BvhFile read_bvh(const std::filesystem::path& path) { return parse_bvh(read_text_file(path, "BVH"), path.string()); }
 
-BvhPose bvh_pose(const BvhFile& bvh, int frame) {
+BvhPose bvh_pose(const BvhFile& bvh, int frame, int pelvis) {
   BvhPose pose;
+  std::vector<char> travels(bvh.joints.size(), 0);
+  for (std::size_t j = 0; j < travels.size(); ++j) travels[j] = bvh.joints[j].parent < 0;
+  for (int j = pelvis; j >= 0; j = bvh.joints[static_cast<std::size_t>(j)].parent)
+    travels[static_cast<std::size_t>(j)] = 1;
   pose.positions.resize(static_cast<Eigen::Index>(bvh.joints.size()), 3);
   for (std::size_t j = 0; j < bvh.joints.size(); ++j) {
     const BvhJoint& joint = bvh.joints[j];
     Mat3 turn = Mat3::Identity();
-    Vec3 moved = joint.offset;
+    Vec3 moved = frame >= 0 && travels[j] ? channels_from(bvh, joint) : joint.offset;
     for (std::size_t c = 0; c < joint.channels.size() && frame >= 0; ++c) {
       const int kind = static_cast<int>(joint.channels[c]);
       const double value = bvh.motion(frame, joint.first_channel + static_cast<int>(c));
-      // Channels from left to right are rotations from the outside in. Bones keep their length.
+      // Channels from left to right are rotations from the outside in.
       if (kind >= 3) turn = turn * rotation_matrix(value * std::numbers::pi / 180 * Vec3::Unit(kind - 3));
-      if (kind < 3 && joint.parent < 0) moved[kind] += value;
+      if (kind < 3 && travels[j]) moved[kind] += value;
     }
     if (joint.parent >= 0) {
       const Mat3& parent = pose.rotations[joint.parent];

@@ -35,11 +35,13 @@ BvhFile read_bvh(const std::filesystem::path&);
 BvhFile parse_bvh(std::string_view text, const std::string& name);
 
 // Rotation of each joint in the file's axes and position of each in its unit. frame -1: the zero pose of the file.
+// Joints from the root to `pelvis` (-1: the root alone) move by their position channels, other bones keep their length.
+// The channels of a joint below the root count from its parent if they begin near its offset, else from the offset.
 struct BvhPose {
   std::vector<Mat3> rotations;
   Points positions;
 };
-BvhPose bvh_pose(const BvhFile&, int frame);
+BvhPose bvh_pose(const BvhFile&, int frame, int pelvis = -1);
 
 struct BvhOptions {
   std::map<std::string, std::string> joints;  // joints of the file by SMPL's names; others are matched by common names
@@ -58,9 +60,9 @@ std::vector<int> matched_joints(const BvhFile&, const std::map<std::string, std:
 // rotations cannot be copied. Both are taken as standing upright. The body's upper arms, forearms, thighs and shins are
 // first turned, by the least rotation, to the directions of the file's at rest. Then each joint turns the body's bone
 // as it turns the file's from rest. Trunk, head, collars and feet count as equal at rest, except for the heading. The
-// axis along which the file's figure stands becomes Y; its heading stays. Only the root's translation is used: it is
-// scaled, starts above the origin, and the lowest foot of the clip touches the ground. Throws Error if the rest pose
-// does not stand upright.
+// axis along which the file's figure stands becomes Y; its heading stays. Only the translation of the hips and of what
+// they hang on is used: it is scaled, starts above the origin, and the lowest foot of the clip touches the ground.
+// Throws Error if the rest pose does not stand upright.
 Clip retargeted(const BvhFile&, const Points& joints, const BvhOptions&);
 
 }  // namespace selvedge

@@ -48,7 +48,7 @@ Source upright_source(const BvhFile& bvh, const BvhOptions& options) {
   Source s{matched_joints(bvh, options.joints), Mat3::Identity(), bvh_pose(bvh, options.rest_frame)};
   std::optional<Mat3> upright = upright_axes(s);
   if (!upright && options.rest_frame < 0) {
-    s.rest = bvh_pose(bvh, 0);
+    s.rest = bvh_pose(bvh, 0, s.joint[smpl::pelvis]);
     upright = upright_axes(s);
   }
   if (!upright)
@@ -118,7 +118,7 @@ Clip retargeted(const BvhFile& bvh, const Points& joints, const BvhOptions& opti
   Vec3 origin = Vec3::Zero();
   double lowest = std::numeric_limits<double>::infinity();  // of the feet, compared to standing
   for (int f = 0; f < bvh.motion.rows(); ++f) {
-    const BvhPose theirs = bvh_pose(bvh, f);
+    const BvhPose theirs = bvh_pose(bvh, f, s.joint[smpl::pelvis]);
     BodyPose pose = pose_of(s, theirs, align);
     const Mat3 turn = rotation_matrix(row(pose.rotations, smpl::pelvis));
     pose.translation = scale * s.hips(theirs) - turn * hips - root;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <set>
 
 #include <fmt/format.h>
@@ -91,12 +92,13 @@ std::vector<NumberedFile> numbered_files(const Config& section, const std::files
   if (files.empty()) existing_path(at, pattern.with(first), folder);
   if (count.given && files.back().number < last)
     count.fail(fmt::format("asks for {} files, and {} is the last", count.number(), files.back().file.string()),
-               fmt::format("give count: {}", files.back().number - first + 1));
+               fmt::format("give count: {}", std::int64_t{files.back().number} - first + 1));
+  const std::int64_t wanted = std::int64_t{files.back().number} - first + 1;
   if (const std::string missing = missing_text(pattern, files); !missing.empty())
-    warnings.push_back(fmt::format(
-        "{}: files of the sequence are missing, {} of {}: {}; in their place it moves "
-        "steadily from the one before to the one after",
-        section.where, files.back().number - first + 1 - std::ssize(files), files.back().number - first + 1, missing));
+    warnings.push_back(
+        fmt::format("{}: files of the sequence are missing, {} of {}: {}; in their place it moves "
+                    "steadily from the one before to the one after",
+                    section.where, wanted - std::ssize(files), wanted, missing));
   return files;
 }
 

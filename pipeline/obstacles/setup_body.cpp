@@ -207,10 +207,11 @@ Performance read_figure(const Config& section, const std::filesystem::path& fold
 void perform_clip(Clip made, const Config& section, const Config& what, Performance& who) {
   who.clip = std::move(made);
   for (std::size_t f = 0; f < who.clip.poses.size(); ++f)
-    if (const BodyPose& pose = who.clip.poses[f];
-        !pose.rotations.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= largest_length))
+    if (const BodyPose& pose = who.clip.poses[f]; !(pose.rotations.cwiseAbs().maxCoeff() <= largest_turn) ||
+                                                  !(pose.translation.cwiseAbs().maxCoeff() <= largest_length))
       what.fail(fmt::format("moves the body absurdly far in frame {}", f),
-                fmt::format("repair it where it was made; up to {:g} m are allowed", largest_length));
+                fmt::format("repair it where it was made; up to {:g} m and {:g} radians are allowed", largest_length,
+                            largest_turn));
   who.fits_room = section["room"].numbers.empty();
   leave_room(who.fits_room ? GiveWayOptions{}.room : section["room"].number(), who);
 }

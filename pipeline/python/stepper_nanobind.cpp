@@ -8,6 +8,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "physics/scene/joint_lists.hpp"
+#include "physics/scene/scene_numbers.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "pipeline/config/config.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
@@ -123,7 +124,8 @@ class PythonStepper final : public Stepper {
     for (std::size_t p = 0; p < scene_.pins.size(); ++p)
       end.x.row(scene_.pins[p]) = drive.pins.row(static_cast<Eigen::Index>(p));
     end.v = both ? rows_of(made[1], "v") : Points((end.x - from.x) / dt);
-    return end.x.allFinite() && end.v.allFinite() ? Reason::none : Reason::not_finite;
+    const auto allowed = [](const Points& rows) { return (rows.array().abs() <= limits::farthest).all(); };
+    return allowed(end.x) && allowed(end.v) ? Reason::none : Reason::not_finite;
   }
 
   Points rows_of(const nb::object& array, const std::string& name) const {

@@ -1,3 +1,4 @@
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 // What a body of the scene wears, and how cloths start.
@@ -56,9 +57,9 @@ const Options<Draping>& start_options() {
             "How garments start, the same for all of a scene. `skinned`: where the body's first pose puts them, "
             "possibly tangled. `draped`: free of intersections, after a simulation in which the body moves from the "
             "pose that they were made in. `cut`: skinned, but tangled triangles take no part until they are free."),
-       number("seconds", &Draping::seconds, Unit::time, positive,
+       number("seconds", &Draping::seconds, Unit::time, {.low = 0, .high = longest_lead, .low_in = false},
               "Time in which the body moves to its first pose, for `draped`."),
-       number("hold", &Draping::hold, Unit::time, not_negative,
+       number("hold", &Draping::hold, Unit::time, {.low = 0, .high = longest_lead},
               "Time for which the body then holds its first pose, until time 0, for `draped`."),
        flag("moving", true,
             "True: a garment starts with the velocity of the skinned body. False: it starts with the cloth's "

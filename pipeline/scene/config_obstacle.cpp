@@ -1,5 +1,6 @@
 #include "pipeline/bodies/body_smpl.hpp"
 #include "pipeline/bodies/smpl_joints.hpp"
+#include "pipeline/host/bounds.hpp"
 #include "pipeline/scene/config_scene.hpp"
 
 namespace selvedge::table {
@@ -125,7 +126,7 @@ const Section& body_section() {
        integer("turns", {.low = 0, .high = 100}, "0",
                "How often the motion reverses at an end of the clip. 1: forward and backward. 0: the body keeps the "
                "last pose."),
-       number("blend_in", Unit::time, not_negative, "0",
+       number("blend_in", Unit::time, {.low = 0, .high = longest_lead}, "0",
               "Time in which the body moves from `start_pose` into the clip. 0: it begins with the clip."),
        word("start_pose", {"zero", "arms_down"}, "zero", "Pose from which `blend_in` starts."),
        with_words(

@@ -215,6 +215,7 @@ void settle_people(const PathsOfFile& paths, std::vector<Config>& people) {
       if (!person["clips"].items.empty())
         body["clip"].fail("is given beside `clips`", "move it, with its keys, into the list");
       Config clip = empty_section(person_clip_section());
+      for (Config& entry : clip.entries) entry.given = false;
       clip.path = body.path + ".clip";
       clip.where = body["clip"].where;
       clip["clip"].where = body["clip"].where;

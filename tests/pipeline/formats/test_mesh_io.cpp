@@ -125,6 +125,15 @@ TEST_CASE("Byte order marks are read over, unknown words counted, and what no OB
   CHECK_THAT(odd.warnings[1], Contains("1 line begins with") && Contains("`vertex`"));
 }
 
+TEST_CASE("A PLY file has one element of vertices", "[mesh_io]") {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  CHECK_THAT(refusal("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\n" + xyz +
+                                  "property float s\nproperty float t\nelement vertex 3\n" + xyz +
+                                  "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                  "0 0 0 0.5 0.5\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+             Contains("two elements `vertex`") && Contains("leave one"));
+}
+
 TEST_CASE("Files whose lines end in carriage returns alone are read as others", "[mesh_io]") {
   const auto with_returns = [](std::string text) {
     std::ranges::replace(text, '\n', '\r');

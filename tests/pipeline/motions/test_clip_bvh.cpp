@@ -111,6 +111,28 @@ TEST_CASE("clip_bvh: a chain of two joints, by hand", "[clip]") {
   CHECK(pose.rotations[1].isApprox(about(2, 90) * about(0, 90) * about(2, 90), 1e-12));
 }
 
+TEST_CASE("clip_bvh: hips below a root that does not move carry the figure's way", "[clip]") {
+  const Points joints = fake::skeleton();
+  const Rig rig = arms_down();
+  const std::string direct = text_of(rig, roots());
+  const Clip wanted = retargeted(parse_bvh(direct, "a.bvh"), joints, {});
+  for (const bool whole : {false, true}) {  // position channels count from the parent, or from the offset
+    std::vector<Vec3> moved = roots();
+    if (whole)
+      for (Vec3& at : moved) at += row(rig.rest, 0);
+    std::string text = text_of(rig, moved);
+    const std::string begin = "HIERARCHY\nROOT",
+                      reference = "HIERARCHY\nROOT Reference\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT";
+    text.replace(text.find(begin), begin.size(), reference);
+    text.insert(text.find("MOTION"), "}\n");
+    const Clip clip = retargeted(parse_bvh(text, "a.bvh"), joints, {});
+    REQUIRE(clip.poses.size() == wanted.poses.size());
+    for (std::size_t f = 0; f < clip.poses.size(); ++f)
+      CHECK((clip.poses[f].translation - wanted.poses[f].translation).norm() < 1e-9);
+    CHECK((clip.poses.back().translation - clip.poses.front().translation).norm() > 0.05);
+  }
+}
+
 TEST_CASE("clip_bvh: errors name file and line", "[clip]") {
   const auto broken = [](const std::string& from, const std::string& to) {
     std::string text = two_joints;

@@ -44,6 +44,9 @@ TEST_CASE("A number that is missing in a sequence is named, and the others keep 
   CHECK_THROWS_WITH(with(folder, "sequence: {pattern: f%d.obj, first: 3, fps: 10}"),
                     Contains("f3.obj") && Contains("first: 1"));
   CHECK_THROWS_WITH(with(folder, "sequence: {pattern: g%d.obj, fps: 10}"), Contains("g0.obj"));
+  std::filesystem::copy_file(folder.path / "f1.obj", folder.path / "f2147483647.obj");
+  const Setup far = with(folder, "sequence: {pattern: f%d.obj, first: 1, fps: 10}");
+  CHECK(std::ranges::any_of(far.warnings, [](const std::string& w) { return w.find("of 2147483647") != w.npos; }));
 }
 
 TEST_CASE("What files do not say of their time is said, and so is where they end", "[time]") {

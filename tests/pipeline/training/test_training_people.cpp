@@ -109,6 +109,25 @@ TEST_CASE("training people: a SMPL file, AMASS files and an OBJ are trained on, 
   CHECK(read_training_checkpoint(file, options, history)->counts.step == 4);
 }
 
+TEST_CASE("training people: one clip at the body is that clip in the list", "[training]") {
+  const OwnData own("training_people_one_clip");
+  const std::string wear = "wear: [{garments: [{file: skirt.obj, unit: cm}]}]";
+  const auto poses = [&](const std::string& body, const std::string& clips) {
+    const TrainingOptions options = read_training(
+        own.write("", "one.yaml"), {"samples.people=[{name: anna, body: {" + body + "}, " + clips + wear + "}]"});
+    const auto whole = make_trainer(options);
+    REQUIRE(whole->maker->world.bodies[0].clips.size() == 1);
+    return whole->maker->world.bodies[0].clips[0].motion;
+  };
+  for (const std::string clip : {"walk", "moves/kick.npz"}) {
+    INFO(clip);
+    const Clip at_body = poses("model: body.npz, clip: " + clip, ""),
+               in_list = poses("model: body.npz", "clips: [" + clip + "], ");
+    REQUIRE(at_body.poses.size() == in_list.poses.size());
+    CHECK(at_body.poses.back().rotations == in_list.poses.back().rotations);
+  }
+}
+
 TEST_CASE("training people: a glTF rig with its animation, and a body file with a BVH clip", "[training]") {
   const OwnData own("training_people_files");
   const BodyModel body = fake::small_body();
