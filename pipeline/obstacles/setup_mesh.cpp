@@ -18,13 +18,13 @@ namespace {
 
 constexpr double smallest = 0.01;  // least diagonal of a cloth or a body [m]
 
-// What brings an extent [m] nearest to a metre, by a power of ten, and the extent then: a unit that files have, else a
-// scale, in the place of the one that there is.
-std::string likely_cure(double extent, double scale) {
+// What brings an extent [m] nearest to a metre, by a power of ten, and the extent then: a unit that files have, if
+// there is a key for it, else a scale, in the place of the one that there is.
+std::string likely_cure(double extent, double scale, bool has_unit) {
   const int power = static_cast<int>(-std::round(std::log10(std::max(extent, 1e-9))));
   const double factor = std::pow(10.0, power);
   constexpr std::array units{"dm", "cm", "mm"};
-  if (power < 0 && -power <= std::ssize(units))
+  if (has_unit && power < 0 && -power <= std::ssize(units))
     return fmt::format("if its file is not in metres, say so by the key `unit` (`unit: {}` makes it {:.3g} m)",
                        units[static_cast<std::size_t>(-power - 1)], factor * extent);
   return fmt::format("if that is not its size, give it another by the key `scale` (`scale: {:g}` makes it {:.3g} m)",
@@ -58,11 +58,11 @@ void refuse_far(const Config& at, const std::string& noun, const Points& x) {
                           largest_length));
 }
 
-void warn_of_extent(const Config& section, const std::string& kind, const std::string& noun, double largest,
-                    const Points& x, const Triangles& triangles, std::vector<std::string>& warnings) {
+void warn_of_extent(const Config& section, const std::string& noun, double largest, bool has_unit, const Points& x,
+                    const Triangles& triangles, std::vector<std::string>& warnings) {
   const double extent = box_diagonal(x(triangles.reshaped(), Eigen::all));
-  if (section[kind]["unit"].given || (extent <= largest && extent >= smallest)) return;
-  const std::string cure = likely_cure(extent, section["scale"].number());
+  if (extent <= largest && extent >= smallest) return;
+  const std::string cure = likely_cure(extent, section["scale"].number(), has_unit);
   warnings.push_back(fmt::format("{} spans {:.3g} m; {}", noun, extent, cure));
 }
 

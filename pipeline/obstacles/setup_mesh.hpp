@@ -18,10 +18,10 @@ void read_weld(const Config& section, const std::string& name, Mesh&);
 void refuse_far(const Config& at, const std::string& noun, const Points& x);
 
 // Adds a warning if a mesh from a file, as placed, is larger than `largest` or smaller than a centimetre, since files
-// have units of their own. Vertices in no triangle do not count. `kind`: the key whose section has the key `unit`, in
-// the section that has the key `scale`.
-inline constexpr double largest_cloth = 10, largest_obstacle = 50;  // diagonals of boxes [m]
-void warn_of_extent(const Config& section, const std::string& kind, const std::string& noun, double largest,
-                    const Points& x, const Triangles&, std::vector<std::string>& warnings);
+// have units of their own. Vertices in no triangle do not count. `section`: that with the key `scale`.
+// `has_unit`: whether there is a key `unit` too.
+inline constexpr double largest_cloth = 10, largest_body = 20, largest_obstacle = 50;  // diagonals of boxes [m]
+void warn_of_extent(const Config& section, const std::string& noun, double largest, bool has_unit, const Points& x,
+                    const Triangles&, std::vector<std::string>& warnings);
 
 }  // namespace selvedge

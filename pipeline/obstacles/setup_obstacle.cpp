@@ -106,8 +106,8 @@ ObstaclePart read_obstacle(const Config& section, std::size_t index, const std::
     refuse_far(section, noun, frame);
   }
   for (const std::string kind : {"mesh", "sequence", "trajectory"})
-    if (section[kind].given)
-      warn_of_extent(section, kind, noun, largest_obstacle, body->frames[0], body->triangles, warnings);
+    if (section[kind].given && !section[kind]["unit"].given)
+      warn_of_extent(section, noun, largest_obstacle, true, body->frames[0], body->triangles, warnings);
   const Motion motion = read_motion(section["motion"], body->frames[0]);
   ObstaclePart part;
   part.obstacle.name = obstacle_name(section, index);

@@ -198,6 +198,10 @@ std::vector<ObstaclePart> read_all_obstacles(const Config& list, const std::file
   for (std::size_t o = 0; o < list.items.size(); ++o) {
     parts.push_back(bodies[o] ? obstacle_of(bodies[o]) : read_obstacle(list.items[o], o, folder, warnings));
     take_name(list.items[o], parts.back().obstacle.name, names);
+    if (bodies[o])
+      warn_of_extent(list.items[o], "body `" + parts.back().obstacle.name + "`", largest_body, false,
+                     list.items[o]["scale"].number() * bodies[o]->body.skin.rest, bodies[o]->body.skin.triangles,
+                     warnings);
   }
   return parts;
 }

@@ -140,8 +140,8 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
   part.mesh.x = worn ? skinned_at(*part.worn, 0) : placed(section, part.mesh.x);
   refuse_far(section, "cloth `" + part.name + "`", part.mesh.x);
-  if (section["mesh"].given)
-    warn_of_extent(section, "mesh", "cloth `" + part.name + "`", largest_cloth, part.mesh.x, part.mesh.triangles,
+  if (section["mesh"].given && !section["mesh"]["unit"].given)
+    warn_of_extent(section, "cloth `" + part.name + "`", largest_cloth, true, part.mesh.x, part.mesh.triangles,
                    warnings);
   if (!worn) sew(section["seams"], folder, part, warnings);
   if (section["mesh"].given) warn_of_coincident(part, warnings);

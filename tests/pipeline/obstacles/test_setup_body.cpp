@@ -227,6 +227,17 @@ TEST_CASE("The drive says of a body that it does not cross itself only where tha
   CHECK(crossed > 0);
 }
 
+TEST_CASE("A body of a hundred times its size is named, with the scale that mends it", "[setup_body]") {
+  const Folder folder("body_large");
+  BodyModel body = make_mannequin();
+  body.skin.rest *= 100;
+  write_body(folder.path / "large.h5", body);
+  CHECK_THAT(fake::lines(with_body(folder, "{model: large.h5}").warnings),
+             Contains("body `person` spans") && Contains("scale: 0.01"));
+  CHECK_THAT(fake::lines(with_body(folder, "{model: large.h5}", "    scale: 0.01\n").warnings), !Contains("spans"));
+  CHECK_THAT(fake::lines(with_body(folder, "{model: mannequin}").warnings), !Contains("spans"));
+}
+
 TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_body]") {
   const Folder folder("body_faulty");
   CHECK_THROWS_WITH(with_body(folder, "{clip: wlak}"),
