@@ -10,6 +10,7 @@
 #include "pipeline/bodies/joint_regressor.hpp"
 #include "pipeline/config/config_text.hpp"
 #include "pipeline/formats/mesh_faults.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/formats/seam_places.hpp"
 #include "pipeline/obstacles/setup_body.hpp"
 #include "pipeline/python/arrays_nanobind.hpp"
@@ -113,6 +114,8 @@ void warn_of_faults(const std::string& where, const Points& x, const Triangles& 
   if (has_vertex_twice(triangles)) return;
   std::vector<std::string> warnings;
   for (const std::string& fault : mesh_faults(x, triangles)) warnings.push_back(where + ": " + fault);
+  if (const Welding seams = weldable(x, triangles); seams.joined > 0)
+    warnings.push_back(where + ": " + unwelded_text(seams, "welding them before"));
   warn(warnings);
 }
 

@@ -7,7 +7,6 @@
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/host/bounds.hpp"
-#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/obstacles/setup_mesh.hpp"
 #include "pipeline/obstacles/setup_motion.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
@@ -114,15 +113,6 @@ void warn_of_coincident(const ClothPart& part, std::vector<std::string>& warning
         counted(layered, "triangle lies", "triangles lie")));
 }
 
-// A garment of a file whose seams are not welded falls apart along them.
-void warn_of_seams(const Config& garment, const ClothPart& part, std::vector<std::string>& warnings) {
-  const Welding seams = weldable(part.rest, part.mesh.triangles);
-  if (seams.joined == 0) return;
-  const bool is_mesh = lower_extension(garment["file"].text()) != ".h5";
-  warnings.push_back("cloth `" + part.name + "`: " +
-                     unwelded_text(seams, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
-}
-
 void warn_of_faults(const ClothPart& part, std::vector<std::string>& warnings) {
   for (const std::string& fault : mesh_faults(part.mesh.x, part.mesh.triangles))
     warnings.push_back("cloth `" + part.name + "`: " + fault);
@@ -146,7 +136,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   if (!worn) sew(section["seams"], folder, part, warnings);
   if (section["mesh"].given) warn_of_coincident(part, warnings);
   if (of_file) warn_of_faults(part, warnings);
-  if (worn && section["garment"]["file"].given) warn_of_seams(section["garment"], part, warnings);
+  if (worn) warn_of_seams(section["garment"], "cloth `" + part.name + "`", part.rest, part.mesh.triangles, warnings);
   leave_out_massless(part, warnings);
   if (part.mesh.triangles.rows() == 0)
     section.fail("has no triangle with an area in its rest shape", "repair the mesh, or give another `rest`");

@@ -4,6 +4,7 @@
 
 #include "pipeline/formats/mesh_io.hpp"
 #include "pipeline/formats/mesh_mtl.hpp"
+#include "pipeline/formats/mesh_weld.hpp"
 #include "pipeline/garments/garment_dressed.hpp"
 #include "pipeline/garments/garment_hdf5.hpp"
 #include "pipeline/garments/garment_make.hpp"
@@ -278,6 +279,16 @@ Points targets_at(const Wearing& wearing, double time) {
 Points skinned_velocity(const Wearing& wearing, double time) {
   const double fps = wearing.by->clip.fps;
   return fps * (skinned_at(wearing, time + 1 / fps) - skinned_at(wearing, time));
+}
+
+void warn_of_seams(const Config& garment, const std::string& what, const Points& rest, const Triangles& triangles,
+                   std::vector<std::string>& warnings) {
+  if (!garment["file"].given) return;
+  const Welding seams = weldable(rest, triangles);
+  if (seams.joined == 0) return;
+  const bool is_mesh = lower_extension(garment["file"].text()) != ".h5";
+  warnings.push_back(what + ": " +
+                     unwelded_text(seams, is_mesh ? "`weld: true` under `garment`" : "`selvedge dress --weld`"));
 }
 
 }  // namespace selvedge

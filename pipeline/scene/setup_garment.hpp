@@ -52,4 +52,8 @@ Points held_at(const Wearing&, const std::vector<int>& vertices, double time);
 // hangs over a raised knee would be drawn under it.
 Points targets_at(const Wearing&, double time);
 
+// Adds a warning if the garment of a file falls apart along seams that are not welded. `what`: which garment.
+void warn_of_seams(const Config& garment, const std::string& what, const Points& rest, const Triangles&,
+                   std::vector<std::string>& warnings);
+
 }  // namespace selvedge

@@ -71,7 +71,10 @@ TrainingWear wear_of(const Config& section, const std::filesystem::path& folder,
   TrainingWear wear{section["name"].text(), {}, {}};
   wear.weight = section["weight"].number();
   for (const Config& garment : section["garments"].items)
-    for (Garment& made : read_garments(garment, folder, who, warnings)) wear.garments.push_back(std::move(made));
+    for (Garment& made : read_garments(garment, folder, who, warnings)) {
+      warn_of_seams(garment, garment.where, made.skin.rest, made.skin.triangles, warnings);
+      wear.garments.push_back(std::move(made));
+    }
   return wear;
 }
 

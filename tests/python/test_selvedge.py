@@ -82,6 +82,12 @@ def test_an_obstacle_moves():
     assert scene.x[:, 1].min() > 0.29 and scene.clean
 
 
+def test_a_cloth_of_loose_triangles_is_warned_of():
+    x, triangles = sheet(4)
+    with pytest.warns(UserWarning, match="not welded"):
+        selvedge.Scene().add_cloth(x[triangles].reshape(-1, 3), np.arange(triangles.size).reshape(-1, 3), name="soup")
+
+
 @pytest.mark.parametrize(
     "x, triangles, words",
     [

@@ -109,6 +109,29 @@ TEST_CASE("training people: a SMPL file, AMASS files and an OBJ are trained on, 
   CHECK(read_training_checkpoint(file, options, history)->counts.step == 4);
 }
 
+TEST_CASE("training people: a garment whose seams are not welded is named", "[training]") {
+  const OwnData own("training_people_seams");
+  const Mesh skirt = fake::small_skirt();
+  Points loose(3 * skirt.triangles.rows(), 3);
+  Triangles apart(skirt.triangles.rows(), 3);
+  for (Eigen::Index t = 0; t < apart.rows(); ++t)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      loose.row(3 * t + k) = 100 * skirt.x.row(skirt.triangles(t, k));
+      apart(t, k) = static_cast<int>(3 * t + k);
+    }
+  write_obj(own.folder.path / "loose.obj", loose, apart);
+  const auto warnings = [&](const std::string& garment) {
+    const TrainingOptions options = read_training(
+        own.write("", "seams.yaml"), {"samples.people=[{name: anna, body: {model: body.npz}, clips: [walk], wear: "
+                                      "[{garments: [{file: " +
+                                      garment + ", unit: cm}]}]}]"});
+    return fake::lines(make_trainer(options)->maker->world.warnings);
+  };
+  CHECK_THAT(warnings("loose.obj"), Catch::Contains("not welded") && Catch::Contains("weld: true"));
+  CHECK_THAT(warnings("loose.obj, weld: true"), !Catch::Contains("not welded"));
+  CHECK_THAT(warnings("skirt.obj"), !Catch::Contains("not welded"));
+}
+
 TEST_CASE("training people: one clip at the body is that clip in the list", "[training]") {
   const OwnData own("training_people_one_clip");
   const std::string wear = "wear: [{garments: [{file: skirt.obj, unit: cm}]}]";
