@@ -53,13 +53,29 @@ void check_triangles(const Checker& check, const BodyFields& names, const Skinne
     }
 }
 
+double row_sum(const SkinWeights& matrix, Eigen::Index row) {
+  double sum = 0;
+  for (SkinWeights::InnerIterator entry(matrix, row); entry; ++entry) sum += entry.value();
+  return sum;
+}
+
 void check_weights(const Checker& check, const BodyFields& names, const SkinWeights& weights) {
   check.finite(names.weights, weights);
   for (Eigen::Index v = 0; v < weights.rows(); ++v) {
-    double sum = 0;
-    for (SkinWeights::InnerIterator entry(weights, v); entry; ++entry) sum += entry.value();
+    const double sum = row_sum(weights, v);
     if (std::abs(sum - 1) > 1e-3)
       check.fail(names.weights, fmt::format("sums to {} at vertex {}", sum, v), "each vertex's weights must sum to 1");
+  }
+}
+
+// A joint is a mean of vertices: with another sum it would move otherwise than the body where that is moved.
+void check_regressor(const Checker& check, const BodyFields& names, const SkinWeights& regressor) {
+  for (Eigen::Index j = 0; j < regressor.rows(); ++j) {
+    if (!SkinWeights::InnerIterator(regressor, j))
+      check.fail(names.regressor, fmt::format("has no entry for joint {}", j), "each joint must depend on some vertex");
+    if (const double sum = row_sum(regressor, j); std::abs(sum - 1) > 1e-2)
+      check.fail(names.regressor, fmt::format("sums to {:.4g} for joint {}", sum, j),
+                 "a joint is a mean of vertices, whose weights must sum to 1");
   }
 }
 
@@ -103,9 +119,7 @@ void check_body(const BodyModel& body, const std::string& file, const BodyFields
   check.size(names.regressor, body.regressor, joints, body.skin.rest.rows());
   check_joints(check, names, body);
   check.finite(names.regressor, body.regressor);
-  for (Eigen::Index j = 0; j < joints; ++j)
-    if (!SkinWeights::InnerIterator(body.regressor, j))
-      check.fail(names.regressor, fmt::format("has no entry for joint {}", j), "each joint must depend on some vertex");
+  check_regressor(check, names, body.regressor);
 }
 
 }  // namespace selvedge

@@ -127,8 +127,11 @@ RunCommand dress_command(CLI::App& command) {
   command.add_flag("--weld", *weld, "join pieces where their borders meet; --weld=0.1mm sets the distance");
   command.add_option("--body", request->body, "body: mannequin, or a file (.npz, .h5)");
   command.add_option("--shape", request->shape, "shape coefficients of the body")->delimiter(',');
-  command.add_option("--pose", request->pose, "clip that poses the body: a name, .bvh or .npz; default: zero pose");
-  command.add_option("--time", request->time, "time of the pose in the clip [s]");
+  CLI::Option* pose =
+      command.add_option("--pose", request->pose, "clip that poses the body: a name, .bvh or .npz; default: zero pose");
+  command.add_option("--time", request->time, "time of the pose in the clip [s]")
+      ->needs(pose)
+      ->check(CLI::NonNegativeNumber);
   command
       .add_option("--rotate", request->rotations,
                   "JOINT=x,y,z: rotation of a joint in the pose, axis times angle [rad]; may be given again")
@@ -234,10 +237,11 @@ RunCommand export_command(CLI::App& command) {
   command.add_option("--format", request->format, "format: " + export_format_list());
   command.add_option("--out", request->out, "folder for the files")->default_val("export");
   command.add_flag("--obstacles", request->obstacles, "export the obstacles too");
-  command.add_option("--onto", request->onto,
-                     "mesh of your own at the rest shape of the cloth, which moves it (.obj, .ply)");
-  command.add_option("--onto-unit", request->onto_unit, "unit of that mesh: m, dm, cm, mm, in");
-  command.add_option("--cloth", request->cloth, "name of the cloth that moves the mesh; default: all cloths");
+  CLI::Option* onto = command.add_option(
+      "--onto", request->onto, "mesh of your own at the rest shape of the cloth, which moves it (.obj, .ply)");
+  command.add_option("--onto-unit", request->onto_unit, "unit of that mesh: m, dm, cm, mm, in")->needs(onto);
+  command.add_option("--cloth", request->cloth, "name of the cloth that moves the mesh; default: all cloths")
+      ->needs(onto);
   return [request](bool json) {
     Progress progress(std::cerr, isatty(STDERR_FILENO) != 0);
     ExportRequest shown = *request;

@@ -50,8 +50,10 @@ std::vector<RotationPart> rotation_parts(const Npz& npz) {
   if (!npz.has("root_orient"))
     fail(npz, "poses", "is missing, and so is `root_orient`", "it is no AMASS file, or only a part of one");
   std::vector<RotationPart> parts = {{"root_orient", 1}, {"pose_body", 21}};
-  if (npz.has("pose_jaw") && npz.has("pose_eye") && npz.has("pose_hand"))
-    parts.insert(parts.end(), {{"pose_jaw", 1}, {"pose_eye", 2}, {"pose_hand", 30}});
+  if (!npz.has("pose_hand")) return parts;
+  // Without a jaw and eyes the joints are those of SMPL+H.
+  if (npz.has("pose_jaw") && npz.has("pose_eye")) parts.insert(parts.end(), {{"pose_jaw", 1}, {"pose_eye", 2}});
+  parts.push_back({"pose_hand", 30});
   return parts;
 }
 

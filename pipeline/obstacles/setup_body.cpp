@@ -231,6 +231,9 @@ void perform(const Config& section, const std::filesystem::path& folder, Perform
   if (who.shape.size() > who.body.skin.shape_directions.cols())
     shape.fail("has more coefficients than the body has shapes",
                "give at most " + std::to_string(who.body.skin.shape_directions.cols()));
+  if (const Config& given = shape.given ? shape : clip;
+      !(shaped(who.body.skin, who.shape).cwiseAbs().maxCoeff() <= largest_length))
+    given.fail("makes the body absurdly large", "coefficients of SMPL's shapes are mostly between -5 and 5");
   warn_of_crossings(section["model"].text(), own_crossings(who.body, who.shape), who.warnings);
   for (const std::string key : {"joints", "rest_frame"})
     if (section[key].given && !clip.given) section[key].fail("is given without a clip", "name a .bvh file as `clip`");

@@ -21,7 +21,7 @@ struct PatternMesh {
 };
 
 // Meshes the panels with edges of about that length [m]. Both edges of a seam get the same number of vertices, chosen
-// for the longer one. Throws Error, naming the panel, if its outline, cut into edges, crosses itself.
+// for the longer one. Throws Error, naming the panel, if its outline, cut into edges, crosses itself or has too many.
 PatternMesh pattern_mesh(const Pattern&, double edge);
 
 }  // namespace selvedge

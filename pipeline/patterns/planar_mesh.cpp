@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "collision/geometry/error.hpp"
 #include "pipeline/formats/polygon.hpp"
 #include "pipeline/patterns/flip_mesh.hpp"
@@ -17,6 +19,10 @@ constexpr double sound_angle = 0.38;  // if a flip makes a smaller angle, an edg
 FlipMesh outline_mesh(const std::vector<Vec2>& outline) {
   const std::string cure = "draw the panel so that its outline is simple, or take a smaller edge length";
   if (outline.size() < 3 || !(twice_area(outline) > 0)) throw Error("has no area", "outline", cure);
+  if (outline.size() > most_eared_corners)
+    throw Error(
+        fmt::format("is cut into {} edges round its outline; {} are the most", outline.size(), most_eared_corners),
+        "outline", "take a larger edge length, or check `units_in_meter`");
   std::vector<Vec3> corners;
   for (const Vec2& p : outline) corners.emplace_back(p.x(), p.y(), 0);
   FlipMesh mesh(outline, polygon_triangles(corners));

@@ -200,8 +200,8 @@ std::vector<ObstaclePart> read_all_obstacles(const Config& list, const std::file
     take_name(list.items[o], parts.back().obstacle.name, names);
     if (bodies[o])
       warn_of_extent(list.items[o], "body `" + parts.back().obstacle.name + "`", largest_body, false,
-                     list.items[o]["scale"].number() * bodies[o]->body.skin.rest, bodies[o]->body.skin.triangles,
-                     warnings);
+                     list.items[o]["scale"].number() * shaped(bodies[o]->body.skin, bodies[o]->shape),
+                     bodies[o]->body.skin.triangles, warnings);
   }
   return parts;
 }

@@ -118,6 +118,24 @@ void warn_of_faults(const ClothPart& part, std::vector<std::string>& warnings) {
     warnings.push_back("cloth `" + part.name + "`: " + fault);
 }
 
+// A rest shape from another file, or from texture coordinates, may have another unit than the cloth.
+void warn_of_other_size(const Config& rest, const ClothPart& part, std::vector<std::string>& warnings) {
+  if (!rest.given) return;
+  constexpr double most = 4;  // of lengths
+  double area_now = 0, area_at_rest = 0;
+  for (Eigen::Index t = 0; t < part.mesh.triangles.rows(); ++t) {
+    const auto corner = [&](int k) { return row(part.mesh.x, part.mesh.triangles(t, k)); };
+    area_now += area(flatten(corner(0), corner(1), corner(2)));
+    area_at_rest += area(part.rest_triangle[static_cast<std::size_t>(t)]);
+  }
+  const double times = std::sqrt(area_at_rest / area_now);
+  if (!(times > most || times < 1 / most)) return;
+  warnings.push_back(
+      fmt::format("cloth `{}`: its rest shape is {:.3g} times as large as the cloth; if that is not "
+                  "meant, correct `{}` under `rest`",
+                  part.name, times, rest["from"].text() == "uv" ? "uv_unit" : "unit"));
+}
+
 // A sheet, placed, or a garment, worn: mesh, rest shape and velocity.
 void read_shape(const Config& section, const std::filesystem::path& folder, std::vector<std::string>& warnings,
                 ClothPart& part) {
@@ -130,6 +148,7 @@ void read_shape(const Config& section, const std::filesystem::path& folder, std:
   read_rest(section["rest"], part.mesh, !section["mesh"].given, placement["scale"].number(), folder, part);
   part.mesh.x = worn ? skinned_at(*part.worn, 0) : placed(section, part.mesh.x);
   refuse_far(section, "cloth `" + part.name + "`", part.mesh.x);
+  warn_of_other_size(section["rest"], part, warnings);
   if (section["mesh"].given && !section["mesh"]["unit"].given)
     warn_of_extent(section, "cloth `" + part.name + "`", largest_cloth, true, part.mesh.x, part.mesh.triangles,
                    warnings);

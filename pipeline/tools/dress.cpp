@@ -54,6 +54,9 @@ Vec3 read_rotation(const std::string& text, const std::string& where) {
 // The pose; without rows it is the zero pose.
 BodyPose read_pose(const DressRequest& request, const Performance& who) {
   if (!request.pose && request.rotations.empty()) return {};
+  if (const double end = request.pose ? end_of(who.clip) : 0; request.time > end)
+    throw Error("is beyond the clip", fmt::format("--time {:g}", request.time),
+                fmt::format("it ends at {:.4g} s", end));
   BodyPose pose = pose_at(who, request.time);
   for (const std::string& text : request.rotations) {
     const std::string where = "--rotate " + text;

@@ -7,6 +7,7 @@
 
 #include "collision/audit/audit.hpp"
 #include "collision/distance/signed_distance.hpp"
+#include "collision/geometry/box_diagonal.hpp"
 #include "physics/energies/measures.hpp"
 #include "pipeline/bodies/skin_places.hpp"
 #include "pipeline/bodies/up_axis.hpp"
@@ -61,6 +62,24 @@ BodyModel body_to_sew_on(const PatternRequest& request, std::vector<std::string>
       read_performance(read_values(table::body_section(), {{"model", "--body " + request.body, {request.body}}}), {});
   warnings.insert(warnings.end(), who.warnings.begin(), who.warnings.end());
   return std::move(who.body);
+}
+
+// The unit of a pattern is a number in its file, which is easily wrong.
+void warn_of_size(const Pattern& pattern, const PatternMesh& mesh, std::vector<std::string>& warnings) {
+  constexpr double smallest = 0.05, largest = 10;  // of the largest panel [m]
+  double widest = 0;
+  std::size_t which = 0;
+  for (std::size_t p = 0, v = 0; p < pattern.panels.size(); ++p) {
+    const std::size_t begin = v;
+    while (v < mesh.panel.size() && mesh.panel[v] == static_cast<int>(p)) ++v;
+    const double extent =
+        box_diagonal(mesh.placed.middleRows(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(v - begin)));
+    if (extent > widest) which = p;
+    widest = std::max(widest, extent);
+  }
+  if (widest < smallest || widest > largest)
+    warnings.push_back(fmt::format("the largest panel, `{}`, spans {:.3g} m: is `units_in_meter` right?",
+                                   pattern.panels[which].name, widest));
 }
 
 // Records the sewing as a trajectory of the panels, which has one topology.
@@ -144,13 +163,14 @@ void measure(const BodyModel& body, PatternReport& report) {
 PatternReport sew_garment(const PatternRequest& request) {
   if (!is_mesh(request.out)) h5::check_out_name(request.out, "garments");
   const Pattern pattern = read_pattern(request.file);
-  PatternMesh mesh = pattern_mesh(pattern, request.edge);
+  PatternMesh mesh = read_for(request.file.string(), [&] { return pattern_mesh(pattern, request.edge); });
   PatternReport report;
   report.panels = static_cast<int>(pattern.panels.size());
   report.seams = static_cast<int>(pattern.seams.size());
   report.stitches = static_cast<int>(mesh.sewn.size());
   report.least_angle = mesh.least_angle;
   for (const RestTriangle& triangle : mesh.rest) report.area += area(triangle);
+  warn_of_size(pattern, mesh, report.warnings);
   if (request.flat) {
     write_mesh(request.out, mesh.placed, mesh.triangles);
     return report;

@@ -7,6 +7,8 @@
 
 #include "collision/geometry/error.hpp"
 #include "pipeline/garments/outfit.hpp"
+#include "pipeline/host/file_formats.hpp"
+#include "pipeline/host/lower_extension.hpp"
 #include "pipeline/motions/clip_split.hpp"
 #include "pipeline/obstacles/setup_paths.hpp"
 #include "pipeline/run/run_inputs_yaml.hpp"
@@ -25,22 +27,35 @@ Key weight_key(const std::string& what) {
   return number("weight", Unit::none, positive, "1", "How often " + what + " is drawn, beside the others' weights.");
 }
 
-// `*` stands for any characters, including slashes.
+// `*` stands for any characters, including slashes. Every piece between stars is found where it first occurs.
 bool matches(std::string_view pattern, std::string_view text) {
-  if (pattern.empty()) return text.empty();
-  if (pattern[0] != '*') return !text.empty() && text[0] == pattern[0] && matches(pattern.substr(1), text.substr(1));
-  for (std::size_t k = 0; k <= text.size(); ++k)
-    if (matches(pattern.substr(1), text.substr(k))) return true;
-  return false;
+  std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == text;
+  if (!text.starts_with(pattern.substr(0, star))) return false;
+  text.remove_prefix(star);
+  for (pattern.remove_prefix(star + 1); (star = pattern.find('*')) != std::string_view::npos;
+       pattern.remove_prefix(star + 1)) {
+    const std::size_t at = text.find(pattern.substr(0, star));
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at + star);
+  }
+  return text.ends_with(pattern);
 }
 
 bool is_pattern(const std::string& text) { return text.find('*') != std::string::npos; }
 bool is_file(const std::string& text) { return fs::path(text).has_extension(); }
+bool is_clip_file(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".bvh" || extension == ".npz" || is_gltf(file);
+}
 
-// The default name of a clip.
-std::string clip_name(const Config& clip) {
-  std::string name = is_file(clip["clip"].text()) ? fs::path(clip["clip"].text()).replace_extension().generic_string()
-                                                  : clip["clip"].text();
+std::string without_extension(const std::string& file) { return fs::path(file).replace_extension().generic_string(); }
+
+// The default name of a clip: its file without the extension, unless another of `files` would have the same name.
+std::string clip_name(const Config& clip, const std::vector<std::string>& files) {
+  const std::string& file = clip["clip"].text();
+  const auto same = [&](const std::string& other) { return without_extension(other) == without_extension(file); };
+  std::string name = is_file(file) && std::ranges::count_if(files, same) == 1 ? without_extension(file) : file;
   if (clip["animation"].given) name += ":" + clip["animation"].text();
   return name;
 }
@@ -55,7 +70,7 @@ void set_path(const PathsOfFile& paths, Config& entry) {
   set_text(paths.seen(entry), entry);
 }
 
-// The files that the pattern matches, ascending. They are searched below the folder before the first `*`.
+// The files of clips that the pattern matches, ascending. They are searched below the folder before the first `*`.
 std::vector<std::string> found_files(const Config& clip, const fs::path& folder) {
   const std::string& pattern = clip.text();
   const std::string begin = pattern.substr(0, pattern.find('*'));
@@ -64,15 +79,18 @@ std::vector<std::string> found_files(const Config& clip, const fs::path& folder)
   // Without a folder, entries are `./NAME` and the pattern may be `NAME`.
   const std::string whole = expanded_path(clip, pattern, folder).lexically_normal().generic_string();
   std::vector<std::string> files;
+  constexpr auto skip_denied = fs::directory_options::skip_permission_denied;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(below, ignored))
-    if (entry.is_regular_file() && matches(whole, entry.path().lexically_normal().generic_string()))
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(below, skip_denied, ignored))
+    if (entry.is_regular_file() && is_clip_file(entry.path()) &&
+        matches(whole, entry.path().lexically_normal().generic_string()))
       files.push_back(pattern.starts_with('/') || pattern.starts_with('$')
                           ? entry.path().generic_string()
                           : entry.path().lexically_relative(folder.empty() ? "." : folder).generic_string());
   std::ranges::sort(files);
   if (files.empty())
-    clip.fail("finds no file", "`*` stands for any characters; files are looked for below " + below.string());
+    clip.fail("finds no .bvh, .npz, .glb or .gltf file",
+              "`*` stands for any characters; files are looked for below " + below.string());
   return files;
 }
 
@@ -94,7 +112,7 @@ void settle_clips(const PathsOfFile& paths, Config& person) {
     for (const std::string& file : files) {
       Config& one = settled.emplace_back(clip);
       set_text(file, one["clip"]);
-      if (!one["name"].given) set_text(clip_name(one), one["name"]);
+      if (!one["name"].given) set_text(clip_name(one, files), one["name"]);
       if (is_file(file)) set_path(paths, one["clip"]);
       for (const std::string& key : body_keys_of_clips)
         if (!one[key].given) take_over(person["body"][key], one[key]);
@@ -119,7 +137,8 @@ void check_names(const std::vector<Config>& items) {
   std::set<std::string> names;
   for (const Config& item : items)
     if (!names.insert(item["name"].text()).second)
-      item.fail("has the name `" + item["name"].text() + "` of another", "give every one a `name` of its own");
+      item.fail("has the name `" + item["name"].text() + "` of another",
+                "take each once, or give it a `name` of its own");
 }
 
 // Visits all entries that name a file.
@@ -146,11 +165,13 @@ const Section& person_clip_section() {
         "person_clip",
         "A clip of a person, with the keys that `body` of a scene has for it. What is left out is as the "
         "person's `body` says.",
-        {text("name", "Name of the clip. Default: the file as it is named here, without its extension."),
+        {text("name",
+              "Name of the clip. Default: the file as it is named here, without its extension, or with it "
+              "where a pattern finds files that differ in it alone."),
          weight_key("the clip"),
          needed(text("clip",
                      "A procedural clip, or a .bvh, AMASS .npz, .glb or .gltf file, relative to this file. `*` "
-                     "stands for any characters, folders included: all such files are clips."))},
+                     "stands for any characters, folders included: all such files of clips are taken."))},
         "clip"};
     for (const Key& key : body_section().keys)
       if (std::ranges::find(body_keys_of_clips, key.name) != body_keys_of_clips.end()) made.keys.push_back(key);

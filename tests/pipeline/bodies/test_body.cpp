@@ -231,6 +231,8 @@ TEST_CASE("a body that is not sound is refused, with the name of the field") {
   CHECK(complaint([](BodyModel& b) { b.regressor.resize(4, 19); }) == "file: regressor");
   CHECK(complaint([&](BodyModel& b) { b.regressor.valuePtr()[0] = nan; }) == "file: regressor");
   CHECK(complaint([](BodyModel& b) { b.regressor.setZero(); }) == "file: regressor");
+  CHECK(complaint([](BodyModel& b) { b.regressor *= 1.001; }) == "nothing");
+  CHECK(complaint([](BodyModel& b) { b.regressor *= 1.1; }) == "file: regressor");
 }
 
 }  // namespace selvedge::test_body

@@ -147,7 +147,10 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
            {"fit absent --reach nan", "--reach: is `nan`; give a number above 0"},
            {"fit absent --frame -1", "--frame: is `-1`; give a number of at least 0"},
            {"push " + mesh + " " + mesh + " --out b.obj --margin inf", "--margin: is `inf`; give"},
-           {"dress " + mesh + " --body absent.h5 --out b.h5", "absent.h5\n  cure: check the path"}}) {
+           {"dress " + mesh + " --body absent.h5 --out b.h5", "absent.h5\n  cure: check the path"},
+           {"dress " + mesh + " --time 1 --out b.h5", "--time requires --pose"},
+           {"export run.h5 --onto-unit cm", "--onto-unit requires --onto"},
+           {"export run.h5 --cloth a", "--cloth requires --onto"}}) {
     const Ended outcome = selvedge_program(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.status == 2);

@@ -118,6 +118,13 @@ TEST_CASE("clip_amass: SMPL-X files", "[clip]") {
   for (const std::string name : {"pose_hand", "pose_jaw", "pose_eye", "betas"}) body.erase(name);
   const Clip bare = read_amass(fake::write_npz(folder.path / "b.npz", body), pelvis, warnings);
   CHECK((bare.joints.size() == 22 && bare.joints.back() == "right_wrist" && bare.shape.size() == 0));
+  // With hands alone the joints are SMPL+H's: root, body, hands.
+  fake::NpzEntries handed = smplx<double>(2);
+  for (const std::string name : {"pose_jaw", "pose_eye"}) handed.erase(name);
+  handed["pose_hand"] = table<double>(2, 90, 66);
+  const Clip hands = read_amass(fake::write_npz(folder.path / "h.npz", handed), pelvis, warnings);
+  CHECK(hands.joints == smpl_joint_names(52));
+  check_rotations(hands, 1, 1, 1e-12);
   fake::NpzEntries all = smplx<double>(2);
   all["poses"] = table<double>(2, 165);
   for (const std::string name : {"root_orient", "pose_body"}) all.erase(name);

@@ -8,6 +8,7 @@
 #include "tests/pipeline/fake_makehuman.hpp"
 #include "tests/pipeline/fake_skeleton.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/refusal.hpp"
 
 namespace selvedge::test_setup_body {
 
@@ -236,6 +237,10 @@ TEST_CASE("A body of a hundred times its size is named, with the scale that mend
              Contains("body `person` spans") && Contains("scale: 0.01"));
   CHECK_THAT(fake::lines(with_body(folder, "{model: large.h5}", "    scale: 0.01\n").warnings), !Contains("spans"));
   CHECK_THAT(fake::lines(with_body(folder, "{model: mannequin}").warnings), !Contains("spans"));
+  CHECK_THAT(fake::lines(with_body(folder, "{model: mannequin, shape: [1e4]}").warnings),
+             Contains("body `person` spans"));
+  CHECK_THAT(testing::refusal([&] { with_body(folder, "{model: mannequin, shape: [1e12]}"); }),
+             Contains("body.shape") && Contains("makes the body absurdly large"));
 }
 
 TEST_CASE("What is wrong with a body is named by file, line and cure", "[setup_body]") {

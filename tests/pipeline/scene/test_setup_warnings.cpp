@@ -48,6 +48,11 @@ TEST_CASE("A file in centimetres that is read as metres is told by its extent", 
              Contains("`shirt` spans 0.00141 m") && Contains("`scale: 1000` makes it 1.41 m"));
   CHECK_THAT(scenes.warnings("cloths: [{name: shirt, mesh: small.obj, scale: 0.5}]\n"),
              Contains("`scale: 500` makes it 0.707 m"));
+  fake::write(scenes.folder, "one.obj", square(1));
+  const std::string rest = "cloths: [{name: shirt, mesh: one.obj, rest: {from: mesh, file: big.obj";
+  CHECK_THAT(scenes.warnings(rest + "}}]\n"),
+             Contains("cloth `shirt`: its rest shape is 60 times as large") && Contains("correct `unit` under `rest`"));
+  CHECK(scenes.warnings(rest + ", unit: cm}}]\n").empty());
   const Setup cured = scenes.read("cloths: [{name: shirt, mesh: small.obj, scale: 1000}]\n");
   CHECK(cured.warnings.empty());
   CHECK(box_diagonal(cured.initial.x) == Approx(std::sqrt(2)));

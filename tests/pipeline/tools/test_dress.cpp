@@ -326,6 +326,12 @@ TEST_CASE("What is wrong with a request is named", "[dress]") {
   CHECK_THAT(complaint([](auto& r) { r.body = "manequin"; }), Contains("--body manequin") && Contains("missing file"));
   CHECK_THAT(complaint([](auto& r) { r.pose = "wlak"; }), Contains("--pose wlak") && Contains("did you mean `walk`"));
   CHECK_THAT(complaint([](auto& r) { r.shape.assign(11, 1); }), Contains("--shape") && Contains("at most 10"));
+  CHECK_THAT(complaint([](auto& r) { r.shape = {1e12}; }), Contains("--shape") && Contains("absurdly large"));
+  CHECK_THAT(complaint([](auto& r) {
+               r.pose = "walk";
+               r.time = 1e9;
+             }),
+             Contains("--time 1e+09: is beyond the clip") && Contains("it ends at"));
   CHECK_THAT(complaint([](auto& r) { r.rotations = {"left_sholder=0,0,1"}; }),
              Contains("--rotate") && Contains("did you mean `left_shoulder`"));
   CHECK_THAT(complaint([](auto& r) { r.rotations = {"left_shoulder=0,1"}; }), Contains("three numbers"));

@@ -4,6 +4,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "tests/pipeline/files.hpp"
+#include "tests/refusal.hpp"
 
 namespace selvedge::test_sew_garment {
 
@@ -51,6 +52,24 @@ TEST_CASE("A skirt that is too wide has slid off, which is said with the frame",
   CHECK(report.sewn.watch.left_in < report.sewn.closing_frames + report.sewn.draping_frames + 10);
   CHECK_FALSE(is_clean(report));
   CHECK_THAT(pattern_text(report), Contains("`skirt` has slid off its body") && Contains("in frame"));
+}
+
+TEST_CASE("A pattern in another unit is told by its size, and errors name its file", "[sew_garment]") {
+  const fake::Folder folder("sewn_unit");
+  const auto cut_in = [&](const std::string& unit) {
+    std::string text = skirt(30, 22);
+    text.replace(text.find("\"units_in_meter\":100"), 20, "\"units_in_meter\":" + unit);
+    PatternRequest request;
+    request.file = fake::write(folder, "skirt.json", text);
+    request.out = folder.path / "skirt.obj";
+    request.flat = true;
+    return sew_garment(request).warnings;
+  };
+  CHECK(cut_in("100").empty());
+  CHECK_THAT(fake::lines(cut_in("10000")), Contains("`front`, spans 0.00721 m") && Contains("units_in_meter"));
+  const std::string told = testing::refusal([&] { cut_in("1"); });
+  CHECK_THAT(told,
+             Contains("skirt.json: panel `front`") && Contains("2000 are the most") && Contains("units_in_meter"));
 }
 
 TEST_CASE("A pattern whose stitches never closed is not good, however well it lies", "[sew_garment]") {

@@ -214,7 +214,7 @@ TEST_CASE("training people: imported checkpoints go on learning on one's own dat
 TEST_CASE("training people: errors name place and cure", "[training]") {
   const OwnData& own = own_data();
   const std::string clip = "samples.people.anna.clips=", wear = "samples.people.anna.wear=";
-  CHECK(has(own.error({clip + "['moves/none*.npz']"}), "finds no file"));
+  CHECK(has(own.error({clip + "['moves/none*.npz']"}), "finds no .bvh, .npz, .glb or .gltf file"));
   CHECK(has(own.error({clip + "[moves/lost.npz]"}), "names the missing file"));
   CHECK(has(own.error({clip + "[]"}), "has no clip"));
   write_amass(own.folder.path / "glance.npz", 2, 0.3);  // a sixtieth of a second
@@ -242,6 +242,28 @@ TEST_CASE("training people: patterns find files beside a training file that is n
     std::filesystem::current_path(before);
     CHECK(told.empty());
   }
+}
+
+TEST_CASE("training people: a pattern takes files of clips alone, each with a name of its own", "[training]") {
+  const OwnData& own = own_data();
+  const std::filesystem::path folder = own.folder.path / "both";
+  std::filesystem::create_directories(folder);
+  write_amass(folder / "turn.npz", 40, 0.3);
+  write_amass(folder / "wave.npz", 40, 0.3);
+  std::filesystem::copy_file(folder / "turn.npz", folder / "turn.copy.npz");
+  fake::write(own.folder, "both/turn.bvh", "HIERARCHY");
+  fake::write(own.folder, "both/README.txt", "where they are from");
+  const std::string clips_are = "samples.people.anna.clips=";
+  own.write("");
+  const TrainingOptions options = read_training(own.training, {clips_are + "['both/*']"});
+  std::vector<std::string> names;
+  for (const Config& clip : options.samples.people[0]["clips"].items) names.push_back(clip["name"].text());
+  CHECK(names == std::vector<std::string>{"both/turn.bvh", "both/turn.copy", "both/turn.npz", "both/wave"});
+  CHECK(has(own.error({clips_are + "['both/*.txt']"}), "finds no .bvh, .npz, .glb or .gltf file"));
+  CHECK(has(own.error({clips_are + "['both/w*.npz', 'both/wave.npz']"}), "take each once"));
+  // A pattern of many stars is no search of all ways to match it.
+  const std::string stars = "['both/" + std::string(40, '*') + "a*a*a*a*a*a*a*a*a*a*a*a*b']";
+  CHECK(has(own.error({clips_are + stars}), "finds no .bvh"));
 }
 
 TEST_CASE("training people: a configuration that is written reads back", "[training]") {
