@@ -99,7 +99,7 @@ def test_positions_alone_give_velocities_and_pins_stay_pinned(scene_file):
     assert scene.v[1:, 1] == pytest.approx(0.3) and (scene.v[0] == 0).all()
 
 
-@pytest.mark.parametrize("made", [None, lambda x: x * np.nan])
+@pytest.mark.parametrize("made", [None, lambda x: x * np.nan, lambda x: x + 1e9])
 def test_nothing_and_what_is_not_finite_reject_a_step(made):
     class Fails(selvedge.Stepper):
         def step(self, start, drive, dt):

@@ -219,6 +219,8 @@ TEST_CASE("training people: errors name place and cure", "[training]") {
   CHECK(has(own.error({clip + "[]"}), "has no clip"));
   write_amass(own.folder.path / "glance.npz", 2, 0.3);  // a sixtieth of a second
   CHECK(has(own.error({clip + "[glance.npz]"}), "has fewer than two poses, at 30 a second"));
+  write_amass(own.folder.path / "spun.npz", 40, 1e8);
+  CHECK(has(own.error({clip + "[spun.npz]"}), "moves the body absurdly far in frame 1"));
   CHECK(has(own.error({clip + "[walk, walk]"}), "the name `walk` of another"));
   CHECK(has(own.error({wear + "[{garments: [skirt.obj]}]"}), "is not worn"));
   CHECK(has(own.error({wear + "[{garments: [{file: skirt.obj, unit: cm, on: anna}]}]"}), "leave it out"));
