@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "collision/contact/pair_motion.hpp"
-
 namespace selvedge {
 namespace {
 
@@ -28,23 +26,24 @@ struct Astray {
   }
 };
 
-Astray astray_from_cloth(const ContactWorld& world, const PathPairs& path, const Points& x) {
+// `slack`: half of how far the nodes of a pair may stray in sum [m].
+Astray astray_from_cloth(const ContactWorld& world, const PathPairs& path, double slack, const Points& x) {
   Astray astray{std::vector<char>(static_cast<std::size_t>(x.rows()))};
   if (!world.self) return astray;
-  for (int v = 0; v < path.cloth_end.rows(); ++v) astray.add(v, x, path.cloth_end, path.slack);
+  for (int v = 0; v < path.cloth_end.rows(); ++v) astray.add(v, x, path.cloth_end, slack);
   return astray;
 }
 
 // Obstacles mostly end as they did. What they do not take of twice the slack is left to the cloth.
-Astray astray_from_obstacles(const PathPairs& path, const Points& x) {
+Astray astray_from_obstacles(const PathPairs& path, double slack, const Points& x) {
   Astray astray{std::vector<char>(static_cast<std::size_t>(x.rows()))};
   const int cloth = static_cast<int>(path.cloth_end.rows()), nodes = static_cast<int>(x.rows()),
             obstacles = nodes - cloth;
   if (obstacles == 0) return astray;
   const double farthest = (x.bottomRows(obstacles) - path.end.bottomRows(obstacles)).rowwise().squaredNorm().maxCoeff();
-  const double taken = farthest <= path.slack * path.slack ? std::sqrt(farthest) : path.slack;
-  for (int v = 0; v < cloth; ++v) astray.add(v, x, path.end, 2 * path.slack - taken);
-  for (int node = cloth; node < nodes; ++node) astray.add(node, x, path.end, path.slack);
+  const double taken = farthest <= slack * slack ? std::sqrt(farthest) : slack;
+  for (int v = 0; v < cloth; ++v) astray.add(v, x, path.end, 2 * slack - taken);
+  for (int node = cloth; node < nodes; ++node) astray.add(node, x, path.end, slack);
   return astray;
 }
 
@@ -71,8 +70,7 @@ void leave_out(Among among, const std::vector<char>& astray, PathPairs& path) {
 }
 
 // Lists the pairs of one kind for ends at x1: of the astray nodes if they are few, else of all. True if of all.
-bool search_again(PairSearch& search, Among among, const Astray& astray, double reach, const Points& x1,
-                  PathPairs& path) {
+bool search_again(PairSearch& search, Among among, const Astray& astray, const Points& x1, PathPairs& path) {
   if (astray.count == 0) return false;
   const bool few = static_cast<double>(astray.count) < few_are_astray * search.world().cloth->vertex_count;
   leave_out(among, few ? astray.nodes : std::vector<char>{}, path);
@@ -85,7 +83,7 @@ bool search_again(PairSearch& search, Among among, const Astray& astray, double 
   }
   std::vector<NodePair> found;
   std::vector<double> gap;
-  search.find_near(path.start, end, reach, found, gap, few ? astray.nodes : path.marks, among);
+  search.find_near(path.start, end, path.reach, found, gap, few ? astray.nodes : path.marks, among);
   if (among == Among::cloth)
     path.cloth_end = end.topRows(path.cloth_end.rows());
   else
@@ -98,14 +96,15 @@ bool search_again(PairSearch& search, Among among, const Astray& astray, double 
 }  // namespace
 
 bool update_pairs(PairSearch& search, double thickness, const Points& x0, const Points& x1, PathPairs& path) {
-  const double reach = thickness + 2 * slack_part * thickness;
   const ContactWorld& world = search.world();
-  if (path.end.rows() == x1.rows()) {
-    const Astray of_cloth = astray_from_cloth(world, path, x1), of_obstacles = astray_from_obstacles(path, x1);
+  if (path.end.rows() == x1.rows() && path.reach >= thickness) {
+    const double slack = 0.5 * (path.reach - thickness);
+    const Astray of_cloth = astray_from_cloth(world, path, slack, x1),
+                 of_obstacles = astray_from_obstacles(path, slack, x1);
     if (path.start == x0) {
       try {
-        const bool all_of_cloth = search_again(search, Among::cloth, of_cloth, reach, x1, path);
-        const bool all_of_obstacles = search_again(search, Among::obstacles, of_obstacles, reach, x1, path);
+        const bool all_of_cloth = search_again(search, Among::cloth, of_cloth, x1, path);
+        const bool all_of_obstacles = search_again(search, Among::obstacles, of_obstacles, x1, path);
         return all_of_cloth || all_of_obstacles;
       } catch (...) {
         invalidate(path);
@@ -113,16 +112,25 @@ bool update_pairs(PairSearch& search, double thickness, const Points& x0, const 
       }
     }
     if (of_cloth.count + of_obstacles.count == 0 &&
-        astray_from_cloth(world, path, x0).count + astray_from_obstacles(path, x0).count == 0)
+        astray_from_cloth(world, path, slack, x0).count + astray_from_obstacles(path, slack, x0).count == 0)
       return false;
   }
   invalidate(path);
-  search.find_near(x0, x1, reach, path.pairs, path.gap, path.marks);
+  path.reach = thickness + 2 * slack_part * thickness;
+  search.find_near(x0, x1, path.reach, path.pairs, path.gap, path.marks);
   path.start = x0;
   path.end = x1;
   path.cloth_end = x1.topRows(world.cloth->vertex_count);
-  path.slack = slack_part * thickness;
   return true;
+}
+
+TouchTest::TouchTest(const PathPairs& path, double reach, const Points& x0, const Points& x1)
+    : path_(path), reach_(reach), x0_(x0), x1_(x1), motion_(path.start, x0, x1) {}
+
+bool TouchTest::operator()(std::size_t listed) const {
+  const NodePair& pair = path_.pairs[listed];
+  const auto is_near = [&](const Points& x) { return closest(pair, x).squared_distance < reach_ * reach_; };
+  return motion_.may_come_within(pair, path_.gap[listed], reach_) && (is_near(x0_) || is_near(x1_));
 }
 
 std::vector<NodePair> pairs_within(const PathPairs& path, const Points& x, double distance) {

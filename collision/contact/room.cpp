@@ -171,17 +171,20 @@ bool make_room(PairSearch& search, const ContactWorld& world, const ResolveOptio
   return squeezed;
 }
 
+bool has_arrived(const Points& nodes, const Points& wanted) {
+  const double rounding =
+      4 * std::numeric_limits<double>::epsilon() * std::max(largest_coordinate(nodes), largest_coordinate(wanted));
+  return ((wanted - nodes).array().abs() <= rounding).all();
+}
+
 ResolveReport catch_up(PairSearch& search, const ResolveOptions& options, const Eigen::VectorXd& inverse_mass,
                        const Points& wanted, Points& nodes, PathPairs& path) {
   ResolveReport report;
   const Eigen::Index obstacles = nodes.rows() - search.world().cloth->vertex_count;
   Points there = nodes;
   there.bottomRows(obstacles) = wanted.bottomRows(obstacles);
-  // Where nothing gave way, the ends differ from the wanted ones by the rounding of x + (wanted - x) alone.
-  const double rounding =
-      4 * std::numeric_limits<double>::epsilon() * std::max(largest_coordinate(nodes), largest_coordinate(there));
-  const bool has_arrived = ((there - nodes).array().abs() <= rounding).all();
-  report.clean = has_arrived || find_impacts(search, inverse_mass, options, nodes, there, path, report).empty();
+  report.clean =
+      has_arrived(nodes, there) || find_impacts(search, inverse_mass, options, nodes, there, path, report).empty();
   if (report.clean) nodes = std::move(there);
   return report;
 }

@@ -19,6 +19,9 @@ namespace selvedge {
 bool make_room(PairSearch&, const ContactWorld&, const ResolveOptions&, std::span<const Proximity> near,
                const Points& x0, Points& x1, PathPairs&, Eigen::VectorXd& inverse_mass, ResolveReport&);
 
+// Whether nodes are where they are wanted, up to the rounding of x + (wanted - x).
+bool has_arrived(const Points& nodes, const Points& wanted);
+
 // Moves all obstacles that ended a step short to where they are wanted, if their paths are free by now: demands
 // linearised at the start may ask for more room than the cloth needed in the end. If anything meets on these paths, the
 // report is not clean and `nodes` stay as they were.

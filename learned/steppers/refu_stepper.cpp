@@ -7,6 +7,7 @@
 #include "collision/geometry/stopwatch.hpp"
 #include "learned/steppers/learned_state.hpp"
 #include "physics/frame/bounded_step.hpp"
+#include "physics/scene/part_of_scene.hpp"
 #include "physics/solve/bdf2.hpp"
 
 namespace selvedge {
@@ -136,6 +137,24 @@ void RefuStepper::calm(const State& from, double dt, const Repelled& pushed, Sta
   carry_velocities(vertices, to);
 }
 
+// The last substep leads to the pushed cloth, so that the motion that a frame shows is audited. The hybrid has taken
+// the path of a step that it has judged; then all of the step leads there.
+void lead_to(const State& pushed, const State& from, StepPath& path) {
+  if (path.substeps.empty()) {
+    path.start = gather_nodes(from.x, from.obstacles);
+    path.substeps.emplace_back();
+  }
+  const State seen = path.part ? state_of(*path.part, pushed) : pushed;
+  path.substeps.back().nodes = gather_nodes(seen.x, seen.obstacles);
+}
+
+double longest_edge(const Scene& scene) {
+  double longest = 0;
+  for (const auto& edge : scene.surface.edges.rowwise())
+    longest = std::max(longest, (scene.rest.row(edge[0]) - scene.rest.row(edge[1])).norm());
+  return longest;
+}
+
 StepReport RefuStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
                                   const StepExtras& extras) {
   StepReport report = inner_->step(from, drive, dt, to, extras);
@@ -155,6 +174,7 @@ StepReport RefuStepper::take_step(const State& from, const Drive& drive, double 
   report.collision.pushed_out = static_cast<int>(pushed.pushed.size());
   report.seconds.response += watch.lap();
   report.audit.reset();
+  lead_to(to, from, report.path);
   return report;
 }
 
@@ -163,7 +183,10 @@ StepReport RefuStepper::take_step(const State& from, const Drive& drive, double 
 std::unique_ptr<Stepper> make_refu_stepper(const Scene& scene, std::unique_ptr<Stepper> inner,
                                            const RefuOptions& options) {
   if (std::ranges::none_of(scene.obstacles, [](const Obstacle& o) { return is_closed(o.surface); })) return inner;
-  return std::make_unique<RefuStepper>(scene, std::move(inner), options);
+  RefuOptions fitting = options;
+  LayerOrder& order = fitting.repulsion.order;
+  order.span = std::max(order.span, 1.5 * longest_edge(scene));
+  return std::make_unique<RefuStepper>(scene, std::move(inner), fitting);
 }
 
 }  // namespace selvedge

@@ -20,8 +20,9 @@ struct RefuOptions {
 // The repulsive layer after any stepper. It pushes vertices out that a step leaves inside a closed obstacle
 // (repulsive_layer.hpp), by accurate distances to the union of the obstacles. Pinned vertices stay. The push adds no
 // speed, and removes the part of the vertex' velocity that leads back in. If nothing is inside, or the step is
-// rejected, the result of the inner stepper is returned bit for bit. A pushed state is audited again, and an integrator
-// of two steps starts again from it.
+// rejected, the result of the inner stepper is returned bit for bit. The motion to a pushed state and the state are
+// audited, and an integrator of two steps starts again from it. Layers see each other over 1.5 times the longest edge,
+// and over LayerOrder::span at least.
 //
 // Without closed obstacles the inner stepper is returned. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_refu_stepper(const Scene&, std::unique_ptr<Stepper>, const RefuOptions& = {});

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "collision/contact/path_pairs.hpp"
 #include "collision/geometry/distance.hpp"
 #include "learned/graph/elastic_motion.hpp"
-#include "physics/steppers/guard.hpp"
 
 namespace selvedge {
 namespace {

@@ -91,6 +91,30 @@ double WorkBound::carrying_force(const State& from, double dt, int vertex, const
   return std::min(unnamed_[vertex], held_[vertex] + brought);
 }
 
+Eigen::VectorXd WorkBound::carried_work(const State& from, double dt, const Points& nodes0, const Points& nodes1,
+                                        PathPairs& near) {
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(from.x.rows());
+  const auto for_works = [&](const NodePair& pair, const auto& take) {
+    for (const int node : pair.nodes) {
+      if (world_.is_cloth(node)) continue;
+      const Vec3 way = row(nodes1, node) - row(nodes0, node);
+      const double moved = way.norm();
+      if (moved == 0) continue;
+      for (const int vertex : pair.nodes)
+        if (world_.is_cloth(vertex)) take(vertex, carrying_force(from, dt, vertex, way) * moved);
+    }
+  };
+  const double reach = contact_reach * scene_.contact.thickness;
+  update_pairs(search_, reach, nodes0, nodes1, near);  // a list made for the thickness reaches so far at its own ends
+  const TouchTest touches(near, reach, nodes0, nodes1);
+  for (std::size_t i = 0; i < near.pairs.size(); ++i) {
+    bool more = false;
+    for_works(near.pairs[i], [&](int vertex, double work) { more = more || work > most[vertex]; });
+    if (more && touches(i)) for_works(near.pairs[i], [&](int vertex, double work) { raise(most, vertex, work); });
+  }
+  return most;
+}
+
 Work WorkBound::sum(const State& from, const State& to, PathPairs& near) {
   Work work;
   const Eigen::VectorXd distance = (to.x - from.x).rowwise().norm();
@@ -105,17 +129,8 @@ Work WorkBound::sum(const State& from, const State& to, PathPairs& near) {
   const Points nodes0 = gather_nodes(from.x, from.obstacles), nodes1 = gather_nodes(to.x, to.obstacles);
   const double thickness = scene_.contact.thickness;
   update_pairs(search_, thickness, nodes0, nodes1, near);
-  Eigen::VectorXd carried = Eigen::VectorXd::Zero(distance.size()), pressed = carried;
-  for (const NodePair& pair : near.pairs)
-    for (const int node : pair.nodes) {
-      if (world_.is_cloth(node)) continue;
-      const Vec3 way = row(nodes1, node) - row(nodes0, node);
-      const double moved = way.norm();
-      if (moved == 0) continue;
-      for (const int vertex : pair.nodes)
-        if (world_.is_cloth(vertex))
-          raise(carried, vertex, carrying_force(from, to.time - from.time, vertex, way) * moved);
-    }
+  const Eigen::VectorXd carried = carried_work(from, to.time - from.time, nodes0, nodes1, near);
+  Eigen::VectorXd pressed = Eigen::VectorXd::Zero(distance.size());
   for (const Proximity& p : find_proximities(world_, pairs_within(near, nodes0, thickness), nodes0, thickness))
     for (const int node : p.pair.nodes)
       if (world_.is_cloth(node)) raise(pressed, node, p.rest_gap - p.gap);

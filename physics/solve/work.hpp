@@ -16,7 +16,8 @@ struct Work {
 // Bounds the work of a step from its two ends alone, whichever stepper made it. The unnamed force on a vertex is R = m
 // dv/dt - elastic - gravity - wind - damping, with the larger of the elastic forces at both ends.
 //   pins       |R| times the displacement of the pin
-//   obstacles  |R| times the displacement of the obstacle, at vertices that may have touched it
+//   obstacles  |R| times the displacement of the obstacle, at vertices that touch it: within
+//              contact_reach of the thickness at the start or at the end
 //   wind       the force of the air times the displacement of the vertex
 //   response   |R| times how far a vertex was pressed closer than the rest gap at the start, which pushing apart may
 //              give back; and |R| times its displacement where it started tangled
@@ -41,6 +42,8 @@ class WorkBound {
   void unnamed_forces(const State& from, const State& to, const Drive&);
   void bound_by_start(const State& from, const State& to, const Drive&);
   double carrying_force(const State& from, double dt, int vertex, const Vec3& way) const;  // of an obstacle [N]
+  Eigen::VectorXd carried_work(const State& from, double dt, const Points& nodes0, const Points& nodes1,
+                               PathPairs& near);  // of obstacles on every vertex, at most [J]
   Work sum(const State& from, const State& to, PathPairs& near);
 
   const Scene& scene_;

@@ -89,6 +89,7 @@ class ConventionalStepper final : public Stepper {
                         double time_left) const;
   void end_substep(StepWork&, Substep&&, SubstepState&);
   bool advance(StepWork&, SubstepState&, SubstepRun whole);
+  void let_catch_up(StepWork&, const Points& wanted, SubstepState&);
   int planned_substeps(double dt) const;
   void begin_contact(StepWork&, const Points& nodes);
 
@@ -372,14 +373,19 @@ void ConventionalStepper::begin_contact(StepWork& work, const Points& nodes) {
   update_pairs(contact_.search, contact_.options.thickness, nodes, nodes, contact_.path);
 }
 
+// Obstacles that gave way go on to where they are wanted. The audit of the motion sees that too.
+void ConventionalStepper::let_catch_up(StepWork& work, const Points& wanted, SubstepState& now) {
+  const auto of_obstacles = [&](const Points& nodes) { return Points(nodes.bottomRows(nodes.rows() - now.v.rows())); };
+  const bool lags = !has_arrived(of_obstacles(now.nodes), of_obstacles(wanted));
+  const ResolveReport report =
+      catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path);
+  if (lags && report.clean) work.report.path.substeps.push_back({now.nodes, work.left_alone});
+  add(report, work.report);
+}
+
 int ConventionalStepper::planned_substeps(double dt) const {
   const int least = options_.min_substeps.value_or(least_substeps(dt, options_.substep));
   return options_.substeps.value_or(std::min(least, options_.max_substeps));
-}
-
-StepReport not_finite(StepReport report) {
-  reject(Reason::not_finite, report);
-  return report;
 }
 
 StepReport ConventionalStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
@@ -397,7 +403,10 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   const SearchTally before = contact_.search.tally();
   SubstepState now{gather_nodes(from.x, from.obstacles), from.v, step_history(from)};
   const Points wanted = gather_nodes(from.x, drive.obstacles);
-  if (!now.nodes.allFinite() || !now.v.allFinite()) return not_finite(report);
+  if (!now.nodes.allFinite() || !now.v.allFinite()) {
+    reject(Reason::not_finite, report);
+    return report;
+  }
   if (has_contact()) begin_contact(work, now.nodes);
   if (work.left_alone.any()) now.history = {};
   if (options_.guess == FirstGuess::carried && !extras.guess) work.carried = carried_guess(scene_, from, drive, dt);
@@ -406,8 +415,7 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   const int halvings = from.pinched ? 0 : options_.substep.max_halvings,
             parts = options_.substeps ? 1 : options_.max_substeps / planned;
   if (!advance(work, now, {wanted, drive.pins, dt / planned, planned, halvings, parts})) return report;
-  if (has_contact())
-    add(catch_up(contact_.search, contact_.options, contact_.inverse_mass, wanted, now.nodes, contact_.path), report);
+  if (has_contact()) let_catch_up(work, wanted, now);
   report.counts.searches = contact_.search.tally().searches - before.searches;
   report.counts.candidates = contact_.search.tally().candidates - before.candidates;
   report.contact_forces = std::move(now.forces);

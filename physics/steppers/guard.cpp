@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "collision/contact/pair_motion.hpp"
 #include "physics/energies/measures.hpp"
 #include "physics/energies/nearest.hpp"
 
@@ -212,23 +211,17 @@ GuardMeasures measure(Guard& guard, const State& from, const Drive& drive, doubl
 
 std::vector<char> touching_vertices(ContactStage& stage, const State& from, const std::vector<Points>& obstacles,
                                     const Points& x) {
-  const double reach = contact_reach * stage.options.thickness;
   const Points before = gather_nodes(from.x, from.obstacles), after = gather_nodes(x, obstacles);
-  update_pairs(stage.search, reach, before, after, stage.path);
-  // The list may have further pairs that depend on earlier steps, which a checkpoint does not store: they are left out.
-  const auto is_near = [&](const NodePair& pair, const Points& nodes) {
-    return closest(pair, nodes).squared_distance < reach * reach;
-  };
-  const auto is_cloth = [&](int node) { return node < x.rows(); };
-  const PairMotion motion(stage.path.start, before, after);
   std::vector<char> touching(static_cast<std::size_t>(x.rows()), 0);
+  const double reach = contact_reach * stage.options.thickness;
+  update_pairs(stage.search, reach, before, after, stage.path);
+  const TouchTest touches(stage.path, reach, before, after);
+  const auto is_known = [&](int node) { return node >= x.rows() || touching[static_cast<std::size_t>(node)]; };
   for (std::size_t i = 0; i < stage.path.pairs.size(); ++i) {
-    const NodePair& pair = stage.path.pairs[i];
-    if (!motion.may_come_within(pair, stage.path.gap[i], reach)) continue;
-    const auto is_known = [&](int node) { return !is_cloth(node) || touching[static_cast<std::size_t>(node)]; };
-    if (std::ranges::all_of(pair.nodes, is_known) || (!is_near(pair, before) && !is_near(pair, after))) continue;
-    for (const int node : pair.nodes)
-      if (is_cloth(node)) touching[static_cast<std::size_t>(node)] = 1;
+    const std::array<int, 4>& nodes = stage.path.pairs[i].nodes;
+    if (std::ranges::all_of(nodes, is_known) || !touches(i)) continue;
+    for (const int node : nodes)
+      if (node < x.rows()) touching[static_cast<std::size_t>(node)] = 1;
   }
   return touching;
 }

@@ -8,9 +8,6 @@
 
 namespace selvedge {
 
-// Contact may push a vertex within this many thicknesses.
-constexpr double contact_reach = 2;
-
 // Bounds that a proposed step must keep. On training scenes no conventional step exceeds a third of the bounds of the
 // residual, and noise of 3 mm exceeds other bounds first (tests/pipeline/run/long_guard_tables.cpp prints both;
 // docs/results/hybrid.md). Members are described where keys are bound to them: pipeline/scene/config_run.cpp.

@@ -88,6 +88,7 @@ class HybridStepper final : public Stepper {
   Verdict refine(Work&, const Points& x);
   Verdict judged(const Work&, const Points& x);
   Verdict audited(Work&, Verdict free_of_contact);
+  static void replace_report(StepReport next, Work&);
   void take_parent_step(Work&);
   void note_times(bool asked, bool taken, double proposal, double parent);
 
@@ -162,13 +163,18 @@ Verdict HybridStepper::correct(Work& work, Points x) {
   return audited(work, Verdict::admitted);
 }
 
+// The report of what is tried next. What was tried before stays in its times and counts.
+void HybridStepper::replace_report(StepReport next, Work& work) {
+  next.seconds += work.report.seconds;
+  next.counts += work.report.counts;
+  work.report = std::move(next);
+}
+
 // Makes a solve that begins at the proposal.
 Verdict HybridStepper::refine(Work& work, const Points& x) {
-  const PhaseTimes proposal = work.report.seconds;
   StepExtras extras{.guess = &x, .stop = work.stop};
   Stepper& refiner = parts_.refiner ? *parts_.refiner : *parts_.parent;
-  work.report = refiner.step(work.from, work.drive, work.dt, work.to, extras);
-  work.report.seconds += proposal;
+  replace_report(refiner.step(work.from, work.drive, work.dt, work.to, extras), work);
   if (work.report.status != StepStatus::accepted) return Verdict::not_made;
   if (parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
   return audited(work, Verdict::refined);
@@ -179,9 +185,7 @@ Verdict HybridStepper::propose(Work& work) {
   if (!ask_proposer(work)) return Verdict::not_made;
   if (!asks_for_positions(options_.mode)) return propose_step(work);
   Points x = std::move(work.to.x);
-  const PhaseTimes proposal = work.report.seconds;
-  work.report = {};
-  work.report.seconds = proposal;
+  replace_report({}, work);
   GuardMeasures measures;
   if (const Verdict motion = judge_motion(guard_, work.from, work.dt, x, measures); motion != Verdict::admitted)
     return motion;
@@ -211,9 +215,7 @@ bool HybridStepper::gains_energy(Verdict verdict, Work& work) {
 }
 
 void HybridStepper::take_parent_step(Work& work) {
-  const PhaseTimes before = work.report.seconds;
-  work.report = parts_.parent->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop});
-  work.report.seconds += before;
+  replace_report(parts_.parent->step(work.from, work.drive, work.dt, work.to, {.stop = work.stop}), work);
   if (work.report.status == StepStatus::accepted && parts_.hand_over) parts_.hand_over(work.from, work.drive, work.to);
 }
 

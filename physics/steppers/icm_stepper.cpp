@@ -60,7 +60,8 @@ class IcmStepper final : public Stepper {
         solver_(scene, options.implicit_euler),
         euler_torque_(scene),
         energy_(scene, solver_.elastic()),
-        self_crossings_(world_) {}
+        self_crossings_(world_),
+        traits_{.name = "icm", .max_substeps = options.substeps.value_or(options.max_substeps)} {}
 
   const StepperTraits& traits() const override { return traits_; }
   StepReport step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras) override {
@@ -89,7 +90,7 @@ class IcmStepper final : public Stepper {
   EulerTorque euler_torque_;
   EnergyBalance energy_;
   SelfCrossings self_crossings_;
-  StepperTraits traits_{"icm"};
+  StepperTraits traits_;
   std::vector<NodePair> pairs_;  // scratch
 };
 
@@ -190,7 +191,7 @@ bool IcmStepper::substep(const SubstepState& now, const Points& pins, const Driv
 StepReport IcmStepper::take_step(const State& from, const Drive& drive, double dt, State& to,
                                  const StepExtras& extras) {
   restore_standard_arithmetic();
-  if (const auto restart = restart_of(from, drive, options_.substeps.value_or(options_.max_substeps))) {
+  if (const auto restart = restart_of(from, drive, traits_.max_substeps)) {
     StepReport report = take_step(restart->state, drive, dt, to, extras);
     report.collision.jumped = restart->jumped;
     return report;

@@ -170,7 +170,6 @@ StepReport RestingStepper::step_others(const State& from, const Rest& rest, cons
     report.status = StepStatus::accepted;
     report.by = traits().name;
     report.resting = count;
-    report.audit.emplace();
     report.contact_forces = rest.forces;
     return report;
   }

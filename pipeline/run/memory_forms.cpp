@@ -27,6 +27,13 @@ constexpr std::array known_forms{
     MemoryForm{.name = "bdf2.x", .rows_of = RowsOf::vertices, .positions = true},
     MemoryForm{.name = "bdf2.v", .rows_of = RowsOf::vertices, .most = 1e9},
     MemoryForm{.name = "bdf2.contact", .rows_of = RowsOf::vertices, .columns = 1, .most = 2, .whole = true},
+    // physics/solve/energy_balance.cpp
+    MemoryForm{.name = "energy.from_nowhere", .columns = 1, .most = 1e12},
+    // physics/steppers/carried_guess.cpp
+    MemoryForm{.name = "carried.target", .rows_of = RowsOf::vertices, .positions = true},
+    MemoryForm{.name = "carried.motion", .rows_of = RowsOf::vertices},
+    MemoryForm{.name = "carried.target_before", .rows_of = RowsOf::vertices, .positions = true},
+    MemoryForm{.name = "carried.motion_before", .rows_of = RowsOf::vertices},
     // physics/steppers/recovering_stepper.cpp
     MemoryForm{.name = "recovering.last_clean", .rows_of = RowsOf::vertices, .positions = true},
     MemoryForm{.name = "recovering.last_clean_obstacles", .rows_of = RowsOf::obstacle_vertices, .positions = true},

@@ -85,7 +85,12 @@ std::unique_ptr<Stepper> with_refu(const Setup& setup, std::unique_ptr<Stepper> 
   options.alpha = setup.run.refu.alpha;
   options.neighbours = read_refu_weights(setup);
   options.edge_pass.rounds = setup.run.refu.edge_pass;
-  options.repulsion.order.reach = setup.run.refu.order;
+  LayerOrder& order = options.repulsion.order;
+  order.reach = setup.run.refu.order;
+  if (order.reach > 0 && order.reach <= options.repulsion.margin)
+    throw Error(fmt::format("is {:g} m, no more than what is left between body and cloth", order.reach),
+                setup.file.string() + ": run.refu.order",
+                fmt::format("give 0, or more than {:g} m", options.repulsion.margin));
   return make_refu_stepper(setup.scene, std::move(stepper), options);
 }
 

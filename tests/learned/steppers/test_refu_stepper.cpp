@@ -112,6 +112,20 @@ TEST_CASE("refu stepper: what is inside comes out, no faster than the body, and 
   }
 }
 
+TEST_CASE("refu stepper: the motion to where cloth is pushed is audited", "[refu]") {
+  const fake::LearnedCase made = sheet_over_ball();
+  const auto passed = [&](double down) {
+    const auto refu =
+        make_refu_stepper(made.scene, std::make_unique<BlindStepper>(made.scene, Eigen::RowVector3d(0, -down, 0)));
+    State to;
+    const StepReport report = testing::frame(made.scene, *refu, made.state, made.drives[0], 1.0 / 30, to);
+    CHECK(report.collision.pushed_out > 0);
+    return report.collision.passed_through;
+  };
+  CHECK(passed(0.19) > 0);  // through the ball: its far side is the nearest
+  CHECK(passed(0.04) < passed(0.19));
+}
+
 TEST_CASE("refu stepper: scales by neighbours push farther than the surface, and nothing else moves", "[refu]") {
   const fake::LearnedCase made = sheet_over_ball();
   const Eigen::RowVector3d way(0, -0.04, 0);

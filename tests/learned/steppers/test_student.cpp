@@ -224,8 +224,10 @@ TEST_CASE("student: it never settles, and knows gravity and wind", "[learned][st
   CHECK_FALSE(may_settle(student.architecture));
   const StepperTraits traits = learned_traits(student.architecture);
   CHECK(std::ranges::find(traits.ignores, "wind") == traits.ignores.end());
-  for (const PlanLine& line : learned_plan_lines(worn.scene, student.architecture, {.settle = true}))
-    if (line.feature == "settling pass") CHECK_FALSE(line.in);
+  const std::vector<PlanLine> lines = learned_plan_lines(worn.scene, student.architecture, {.settle = true});
+  const auto settling = std::ranges::find(lines, "settling pass", &PlanLine::feature);
+  REQUIRE(settling != lines.end());
+  CHECK_FALSE(settling->in);
   State settled, plain;
   const auto one = make_learned_stepper(worn.scene, student.architecture, student.weights, {.settle = true});
   testing::frame(worn.scene, *one, worn.state, worn.drives[0], frame_dt, settled);

@@ -112,6 +112,28 @@ TEST_CASE("conventional stepper: plates that close on cloth lag, leave it clean,
   CHECK(worst_lag < 0.01);
 }
 
+TEST_CASE("conventional stepper: the path that is audited ends where cloth and obstacles are",
+          "[conventional_stepper]") {
+  World w = make_world(testing::sheet(8, 0.2, 0));
+  for (const double side : {-1.0, 1.0}) add_obstacle(w, testing::sheet(2, 0.5, side * 0.02));
+  const auto stepper = testing::conventional(w.scene);
+  State state = w.state, to;
+  double lag = 0;
+  for (int f = 1; f <= 25; ++f) {
+    const double half = f < 10 ? 0.02 * (1 - f / 10.0) : f < 15 ? 0 : std::min(0.02, 0.02 * (f - 15) / 5.0);
+    for (int k = 0; k < 2; ++k) w.drive.obstacles[k].col(1).setConstant((k == 0 ? -1 : 1) * half);
+    StepReport report = stepper->step(state, w.drive, 1.0 / 30, to, {});
+    REQUIRE(report.status == StepStatus::accepted);
+    REQUIRE_FALSE(report.path.substeps.empty());
+    const Points off = report.path.substeps.back().nodes - gather_nodes(to.x, to.obstacles);
+    CHECK(off.cwiseAbs().maxCoeff() < 1e-12);
+    lag = std::max(lag, report.collision.obstacle_lag);
+    to.clean = true;
+    state = to;
+  }
+  CHECK(lag > 0);
+}
+
 // A sheet of which the first row is pinned and driven into what lies below it, by `depth` in so many frames and back.
 struct Drawn {
   int out_of_response = 0, pairs = 0, shortened = 0;

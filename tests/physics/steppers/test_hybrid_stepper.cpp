@@ -90,7 +90,23 @@ Points noise(const State& from, const Points& solved) {
   return x;
 }
 
+// Vertices from `first` on go up and down by `size` [m].
+Propose shaken(double size, Eigen::Index first = 0) {
+  return [=](const State& from, const Points& solved) {
+    Points x = solved;
+    for (Eigen::Index i = first; i < x.rows(); ++i)
+      x(i, 1) += size * std::sin(17.0 * static_cast<double>(i) + from.frame);
+    return x;
+  };
+}
+
 void hand_over(const State& from, const Drive&, State& to) { replace_blocks("fake", {{"fake.x", from.x}}, to.memory); }
+
+HybridOptions in_mode(HybridMode mode) {
+  HybridOptions options;
+  options.mode = mode;
+  return options;
+}
 
 std::unique_ptr<Stepper> hybrid(const Scene& scene, const Propose& propose, const HybridOptions& options = {}) {
   return make_hybrid_stepper(
@@ -179,8 +195,7 @@ TEST_CASE("hybrid: a proposal whose energy comes from nowhere is refused", "[hyb
     testing::frame(w.scene, *solver, state, w.drive, dt, to);
     std::swap(state, to);
   }
-  HybridOptions options;
-  options.mode = HybridMode::fallback;  // the proposal with its own velocities
+  const HybridOptions options = in_mode(HybridMode::fallback);  // the proposal with its own velocities
   const auto stepper = make_hybrid_stepper(
       w.scene, {std::make_unique<HastyProposer>(w.scene), make_recovering_conventional_stepper(w.scene), {}, {}},
       options);
@@ -259,14 +274,54 @@ TEST_CASE("hybrid: a new stepper goes on with the same bits", "[hybrid]") {
   };
   for (const HybridMode mode : all_modes) {
     INFO("mode " << static_cast<int>(mode));
-    HybridOptions options;
-    options.mode = mode;
-    const Seen straight = follow(*hybrid(w.scene, now_and_then, options), w, w.state, 10);
+    const Seen straight = follow(*hybrid(w.scene, now_and_then, in_mode(mode)), w, w.state, 10);
     State state = w.state;
-    for (int f = 0; f < 10; ++f) state = follow(*hybrid(w.scene, now_and_then, options), w, state, 1).state;
+    for (int f = 0; f < 10; ++f) state = follow(*hybrid(w.scene, now_and_then, in_mode(mode)), w, state, 1).state;
     CHECK(same_bits(state.x, straight.state.x));
     CHECK(same_bits(state.v, straight.state.v));
   }
+}
+
+TEST_CASE("hybrid: a new stepper goes on with the same bits where so little moves that lists of pairs are kept",
+          "[hybrid]") {
+  World w = testing::make_world(testing::sheet(8, 0.2, 0.0021));
+  add_obstacle(w, testing::sheet(3, 0.6, 0));
+  const double rise = 2e-4;  // of the plate, a frame [m]; the thickness is 2e-3
+  for (const HybridMode mode : {HybridMode::corrected, HybridMode::response}) {
+    INFO("mode " << static_cast<int>(mode));
+    const auto one = hybrid(w.scene, shaken(2e-4), in_mode(mode));
+    State straight = w.state, by_new = w.state, to;
+    for (int f = 1; f <= 16; ++f) {
+      Drive drive = w.drive;
+      drive.obstacles[0].col(1).array() += rise * f;
+      const Verdict verdict = testing::frame(w.scene, *one, straight, drive, dt, to).verdict;
+      straight = to;
+      const auto fresh = hybrid(w.scene, shaken(2e-4), in_mode(mode));
+      CHECK(testing::frame(w.scene, *fresh, by_new, drive, dt, to).verdict == verdict);
+      by_new = to;
+      CHECK(same_bits(by_new.x, straight.x));
+      REQUIRE(by_new.memory.size() == straight.memory.size());
+      for (std::size_t b = 0; b < by_new.memory.size(); ++b) CHECK(by_new.memory[b].rows == straight.memory[b].rows);
+    }
+  }
+}
+
+TEST_CASE("hybrid: what a refused proposal cost is in the report", "[hybrid]") {
+  World w = testing::make_world(testing::sheet(8, 0.2, 0.0021));
+  add_obstacle(w, testing::sheet(3, 0.6, 0));
+  const auto refused = [&](const Propose& propose) {
+    const auto stepper = hybrid(w.scene, propose);
+    const State second = follow(*stepper, w, w.state, 1).state;
+    State to;
+    const StepReport report = testing::frame(w.scene, *stepper, second, w.drive, dt, to);
+    REQUIRE(report.fell_back);
+    return report;
+  };
+  const StepReport none = refused(nowhere), unbalanced = refused(shaken(0.004));
+  CHECK(none.verdict == Verdict::not_made);
+  CHECK((unbalanced.verdict != Verdict::not_made && unbalanced.verdict != Verdict::moved_too_far));
+  CHECK(unbalanced.iterations == none.iterations);
+  CHECK(unbalanced.counts.swept > none.counts.swept);
 }
 
 TEST_CASE("hybrid: a tangled start is left to the parent until it is clean", "[hybrid]") {
@@ -292,8 +347,7 @@ TEST_CASE("hybrid: any two steppers go together in the mode fallback", "[hybrid]
 
 TEST_CASE("hybrid: parts that lack what a mode needs are refused", "[hybrid]") {
   const World w = testing::swinging_sheet();
-  HybridOptions options;
-  options.mode = HybridMode::rough;
+  HybridOptions options = in_mode(HybridMode::rough);
   CHECK_THROWS_AS(
       make_hybrid_stepper(w.scene,
                           {std::make_unique<FakeProposer>(w.scene, as_solved), make_icm_stepper(w.scene, {}), {}, {}},
@@ -312,15 +366,7 @@ TEST_CASE("hybrid: parts that lack what a mode needs are refused", "[hybrid]") {
 TEST_CASE("hybrid: behind the response, motion, audits and energy alone decide", "[hybrid]") {
   const World w = testing::swinging_sheet();
   const auto verdict = [&](HybridMode mode, double size) {
-    const Propose noisy = [size](const State& from, const Points& solved) {
-      Points x = solved;
-      for (Eigen::Index i = 11; i < x.rows(); ++i)
-        x(i, 1) += size * std::sin(17.0 * static_cast<double>(i) + from.frame);
-      return x;
-    };
-    HybridOptions options;
-    options.mode = mode;
-    return follow(*hybrid(w.scene, noisy, options), w, w.state, 2).verdicts.back();
+    return follow(*hybrid(w.scene, shaken(size, 11), in_mode(mode)), w, w.state, 2).verdicts.back();
   };
   CHECK(verdict(HybridMode::response, 0) == Verdict::admitted);
   CHECK(verdict(HybridMode::response, 10) == Verdict::moved_too_far);
@@ -350,8 +396,7 @@ TEST_CASE("hybrid: behind the response, stretch that a proposal makes at moving 
       x.bottomRows(x.rows() - 11).col(2).array() += drawn;  // the cloth is drawn off its pins
       return x;
     };
-    HybridOptions options;
-    options.mode = HybridMode::response;
+    const HybridOptions options = in_mode(HybridMode::response);
     const auto stepper = hybrid(w.scene, stretch, options);
     State from = w.state, to;
     std::vector<Verdict> all;
@@ -370,8 +415,7 @@ TEST_CASE("hybrid: behind the response, stretch that a proposal makes at moving 
 
 TEST_CASE("hybrid: a rough step is made by the refiner from the proposal", "[hybrid]") {
   const World w = testing::swinging_sheet();
-  HybridOptions options;
-  options.mode = HybridMode::rough;
+  const HybridOptions options = in_mode(HybridMode::rough);
   ConventionalOptions rough = one_rough_solve({});
   rough.name = "rough";
   const auto made = [&](const Propose& propose, int frames) {
@@ -391,8 +435,7 @@ TEST_CASE("hybrid: a rough step is made by the refiner from the proposal", "[hyb
 
 TEST_CASE("hybrid: without a refiner the parent makes the solve, and its step is as good as its own", "[hybrid]") {
   const World w = testing::swinging_sheet();
-  HybridOptions options;
-  options.mode = HybridMode::rough;
+  const HybridOptions options = in_mode(HybridMode::rough);
   const auto stepper = hybrid(w.scene, as_solved, options);
   const auto solver = make_recovering_conventional_stepper(w.scene);
   const Seen begun = follow(*stepper, w, w.state, 3);

@@ -143,6 +143,7 @@ TEST_CASE("resting stepper: where all rest nothing is solved", "[resting]") {
   const StepReport report = testing::frame(w.scene, *resting(w.scene), calm, w.drive, 1.0 / 30, to);
   CHECK(report.resting == 2);
   CHECK(report.iterations == 0);
+  CHECK(report.counts.audits == 1);  // as in every frame
   CHECK(report.status == StepStatus::accepted);
   CHECK(to.x == calm.x);
   CHECK(to.v.isZero(0));

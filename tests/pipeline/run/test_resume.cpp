@@ -163,6 +163,10 @@ TEST_CASE("A block of memory is refused that its stepper has not left in the sce
   for (const Known& k :
        {Known{"bdf2.h", 1, 1, RowsOf::none, false}, Known{"bdf2.x", 25, 3, RowsOf::vertices, true},
         Known{"bdf2.v", 25, 3, RowsOf::vertices, false}, Known{"bdf2.contact", 25, 1, RowsOf::vertices, false},
+        Known{"energy.from_nowhere", 1, 1, RowsOf::none, false}, Known{"carried.target", 25, 3, RowsOf::vertices, true},
+        Known{"carried.motion", 25, 3, RowsOf::vertices, false},
+        Known{"carried.target_before", 25, 3, RowsOf::vertices, true},
+        Known{"carried.motion_before", 25, 3, RowsOf::vertices, false},
         Known{"recovering.last_clean", 25, 3, RowsOf::vertices, true},
         Known{"recovering.last_clean_obstacles", 8, 3, RowsOf::obstacle_vertices, true},
         Known{"resting.seconds", 1, 1, RowsOf::cloths, false}, Known{"resting.place", 25, 3, RowsOf::vertices, true},
