@@ -266,7 +266,7 @@ AuditQuestions open_questions(AuditMemory& memory, const MovingBody& cloth, std:
   const double edge = mean_edge(*cloth.surface, *cloth.x1);
   const double reach = std::min(most_reach * edge, memory.reach > 0 ? 2 * memory.reach : first_reach * edge);
   memory.reference.clear();
-  if (!is_slow(memory, sheets, reach)) return questions;
+  if (!(reach > 0) || !is_slow(memory, sheets, reach)) return questions;  // 0: all cloth lies in one point
   memory.reference = memory.last;
   memory.reach = reach;
   memory.inside = -1;

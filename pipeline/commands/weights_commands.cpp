@@ -2,6 +2,7 @@
 #include <memory>
 #include <utility>
 
+#include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
 #include "pipeline/commands/command_output.hpp"
 #include "pipeline/commands/commands.hpp"
@@ -17,6 +18,12 @@ struct TwoFiles {
   std::filesystem::path from, other;  // other: what is written, or compared with
 };
 
+void refuse_same(const TwoFiles& files) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(files.from, files.other, ignored))
+    throw Error("is the file that is read", "--out " + files.other.string(), "give the new file another name");
+}
+
 int print_weights(const WeightFile& file, bool json) {
   const WeightsInfo info = weights_info(file);
   return end_command(json, weights_info_text(info), weights_info_json(info), true);
@@ -30,6 +37,7 @@ RunCommand weights_import_command(CLI::App& command) {
       ->required();
   command.add_option("--out", files->other, "file for the weights (.h5)")->required();
   return [files](bool json) {
+    refuse_same(*files);
     ImportedWeights imported = read_published_weights(files->from);
     const WeightFile file{imported.architecture, std::move(imported.weights), "", origin_of(imported),
                           std::string(program_version())};
@@ -49,6 +57,7 @@ RunCommand weights_halve_command(CLI::App& command) {
   command.add_option("file", files->from, "weight file (.h5)")->required();
   command.add_option("--out", files->other, "file for the weights in 16-bit floats (.h5)")->required();
   return [files](bool json) {
+    refuse_same(*files);
     write_weight_file(files->other, read_weight_file(files->from), WeightStorage::half);
     return print_weights(read_weight_file(files->other), json);
   };

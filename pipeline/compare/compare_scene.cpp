@@ -26,6 +26,15 @@ std::string missing_part(const CompareSetting& setting, const Kinds& kinds) {
   return "left out: there is no weight file " + setting.weights.string();
 }
 
+// Why a setting that was read is no row of the scene; empty: it is one.
+std::string unfit(const CompareSetting& setting, const Setup& setup, const Setup& reference) {
+  if (setup.run.fps != reference.run.fps)
+    return fmt::format("left out: it makes {:g} frames a second, and the scene {:g}", setup.run.fps, reference.run.fps);
+  if (!setting.weights.empty() && !reads_weights(setup))
+    return "left out: `weights` has no part in the stepper `" + setup.kind.name + "`; give `stepper`";
+  return {};
+}
+
 // An error's cure stands on a line of its own.
 std::string on_one_line(const std::string& error) {
   const std::size_t end = error.find("\n  cure: ");
@@ -184,6 +193,7 @@ SceneWork open_scene(const Comparison& comparison, const CompareScene& scene, bo
     } catch (const Error& error) {
       trouble = on_one_line(error.what());
     }
+    if (trouble.empty()) trouble = unfit(setting, setup, reference);
     work.trouble.push_back(trouble);
     work.setups.push_back(trouble.empty() ? std::optional<Setup>(std::move(setup)) : std::nullopt);
   }

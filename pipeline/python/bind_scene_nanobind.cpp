@@ -74,7 +74,8 @@ struct BesideOthers {
 
 nb::list step_scenes(const nb::handle& scenes) {
   std::vector<SceneObject*> all;
-  for (const nb::handle item : list_of(scenes, "step, scenes", "give a list of scenes")) {
+  const nb::list held = list_of(scenes, "step, scenes", "give a list of scenes");  // keeps them while they step
+  for (const nb::handle item : held) {
     const std::string where = "step, scene " + std::to_string(all.size());
     if (!nb::isinstance<SceneObject>(item)) throw Error("is no Scene", where, "give a list of scenes");
     SceneObject* scene = nb::inst_ptr<SceneObject>(item);
@@ -124,7 +125,7 @@ void bind_scene(nb::module_& module) {
       .def(nb::init<const nb::object&, bool>(), nb::kw_only(), "stepper"_a = nb::none(), "contact_forces"_a = false,
            "A scene without anything, at 30 frames a second, under gravity. stepper: a subclass of Stepper; None: the "
            "conventional one. contact_forces: whether steps find them.")
-      .def("add_cloth", &SceneObject::add_cloth_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = "cloth",
+      .def("add_cloth", &SceneObject::add_cloth_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = nb::none(),
            "density"_a = nb::none(), "youngs_modulus"_a = nb::none(), "poisson"_a = nb::none(),
            "bending"_a = nb::none(), "material"_a = nb::none(), "pins"_a = nb::none(),
            "Appends a cloth and returns its number. x: rest positions, n x 3 [m]; triangles: m x 3, whole numbers of "
@@ -132,7 +133,7 @@ void bind_scene(nb::module_& module) {
            "[N m], 1e-5; material, in place of these: a name, or a dict with the keys of `material` in scene files; "
            "pins: vertices that stay where they are.")
       .def(
-          "add_garment", &SceneObject::add_garment_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = "garment",
+          "add_garment", &SceneObject::add_garment_arrays, "x"_a, "triangles"_a, nb::kw_only(), "name"_a = nb::none(),
           "on"_a = nb::none(), "material"_a = nb::none(), "fit"_a = "loose", "pins"_a = nb::none(), "keys"_a,
           "Appends a cloth that a body wears, and returns its number. x: where the body wears it in its zero pose, "
           "n x 3 [m], which is its rest shape; triangles: m x 3; on: the body's name (the only one); material: a name, "
@@ -141,7 +142,7 @@ void bind_scene(nb::module_& module) {
           "of `cloths` in scene files, such as start={\"from\": \"draped\"}.")
       .def("add_body", &SceneObject::add_body_arrays, "x"_a, "triangles"_a, "joints"_a, "weights"_a, "parents"_a,
            nb::kw_only(), "poses"_a = nb::none(), "translations"_a = nb::none(), "fps"_a = 30.0,
-           "joint_names"_a = nb::none(), "name"_a = "body", "room"_a = nb::none(), "keys"_a,
+           "joint_names"_a = nb::none(), "name"_a = nb::none(), "room"_a = nb::none(), "keys"_a,
            "Appends an obstacle that is a skinned body, and returns its number. In its zero pose: x, n x 3 [m]; "
            "triangles, m x 3, counter-clockwise seen from outside; joints, j x 3 [m]; weights, n x j, rows sum to 1; "
            "parents, of each joint, before it, -1 for the first. Its motion: poses, frames x j x 3, axis times angle "
@@ -149,7 +150,7 @@ void bind_scene(nb::module_& module) {
            "room: the gap that soft tissue keeps open between parts of the body [m], 0: none. keys: further keys of "
            "`obstacles` in scene files, such as translate.")
       .def("add_obstacle", &SceneObject::add_obstacle_arrays, "x"_a, "triangles"_a, nb::kw_only(),
-           "name"_a = "obstacle",
+           "name"_a = nb::none(),
            "Appends an obstacle and returns its number. x: positions, n x 3 [m]; triangles: m x 3, counter-clockwise "
            "seen from outside.")
       .def("move_obstacle", &SceneObject::move_obstacle, "number"_a, "x"_a,
@@ -191,9 +192,11 @@ void bind_scene(nb::module_& module) {
           "time", [](SceneObject& scene) { return scene.state().time; }, "Of the present state [s].")
       .def_prop_ro(
           "frame", [](SceneObject& scene) { return scene.state().frame; }, "Steps made so far.")
+      .def_prop_ro("clean", &SceneObject::clean,
+                   "Known to be free of intersections. False after positions were written, until the next step.")
       .def_prop_ro(
-          "clean", [](SceneObject& scene) { return scene.state().clean; }, "Known to be free of intersections.")
-      .def_prop_ro("pairs", &SceneObject::pairs, "Intersecting pairs of triangles after the last step; -1: not known.")
+          "pairs", &SceneObject::pairs,
+          "Intersecting pairs of triangles after the last step; -1: not known, as after positions were written.")
       .def_prop_ro("report", &report_of,
                    "What came of the last step, accepted or rejected, by the names of docs/files.md; empty before one.")
       .def_prop_ro("contact_forces", &contact_forces_of,

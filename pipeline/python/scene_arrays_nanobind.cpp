@@ -130,7 +130,32 @@ void leave_out_slivers(const std::string& where, ClothPart& part) {
   warn(warnings);
 }
 
+// The name that was given, or the first that is free of `noun`, `noun_1`, ...
+std::string name_of(const std::optional<std::string>& given, const std::string& noun,
+                    const std::vector<std::string>& taken) {
+  const auto is_taken = [&](const std::string& name) { return std::ranges::count(taken, name) > 0; };
+  if (given && given->empty()) throw Error("is empty", noun + ", name", "give it a name, or leave it out");
+  if (given && is_taken(*given))
+    throw Error("has the name `" + *given + "` of another", noun + ", name", "give it a name of its own");
+  if (given) return *given;
+  std::string name = noun;
+  for (int k = 1; is_taken(name); ++k) name = fmt::format("{}_{}", noun, k);
+  return name;
+}
+
 }  // namespace
+
+std::vector<std::string> SceneObject::names_of_cloths() const {
+  std::vector<std::string> names;
+  for (const ClothPart& part : cloths_) names.push_back(part.name);
+  return names;
+}
+
+std::vector<std::string> SceneObject::names_of_obstacles() const {
+  std::vector<std::string> names;
+  for (const Obstacle& obstacle : setup_.scene.obstacles) names.push_back(obstacle.name);
+  return names;
+}
 
 // Appends the cloth to the scene, with its pins and what follows others.
 void SceneObject::add_part(ClothPart part) {
@@ -145,11 +170,12 @@ void SceneObject::add_part(ClothPart part) {
   cloths_.push_back(std::move(part));
 }
 
-int SceneObject::add_cloth_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name,
-                                  std::optional<double> density, std::optional<double> youngs_modulus,
-                                  std::optional<double> poisson, std::optional<double> bending,
-                                  const nb::object& material, const nb::object& pins) {
+int SceneObject::add_cloth_arrays(const nb::handle& x, const nb::handle& triangles,
+                                  const std::optional<std::string>& given_name, std::optional<double> density,
+                                  std::optional<double> youngs_modulus, std::optional<double> poisson,
+                                  std::optional<double> bending, const nb::object& material, const nb::object& pins) {
   must_be_open();
+  const std::string name = name_of(given_name, "cloth", names_of_cloths());
   const std::string where = "cloth `" + name + "`";
   ClothPart part;
   part.name = name;
@@ -177,10 +203,12 @@ int SceneObject::add_cloth_arrays(const nb::handle& x, const nb::handle& triangl
   return static_cast<int>(cloths_.size()) - 1;
 }
 
-int SceneObject::add_garment_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name,
-                                    const nb::object& on, const nb::object& material, const std::string& fit,
-                                    const nb::object& pins, const nb::kwargs& keys) {
+int SceneObject::add_garment_arrays(const nb::handle& x, const nb::handle& triangles,
+                                    const std::optional<std::string>& given_name, const nb::object& on,
+                                    const nb::object& material, const std::string& fit, const nb::object& pins,
+                                    const nb::kwargs& keys) {
   must_be_open();
+  const std::string name = name_of(given_name, "garment", names_of_cloths());
   const std::string where = "garment `" + name + "`";
   Mesh mesh;
   mesh.x = points_of(x, where + ", x");
@@ -215,8 +243,10 @@ int SceneObject::add_garment_arrays(const nb::handle& x, const nb::handle& trian
 int SceneObject::add_body_arrays(const nb::handle& x, const nb::handle& triangles, const nb::handle& joints,
                                  const nb::handle& weights, const nb::handle& parents, const nb::object& poses,
                                  const nb::object& translations, double fps, const nb::object& joint_names,
-                                 const std::string& name, const nb::object& room, const nb::kwargs& keys) {
+                                 const std::optional<std::string>& given_name, const nb::object& room,
+                                 const nb::kwargs& keys) {
   must_be_open();
+  const std::string name = name_of(given_name, "body", names_of_obstacles());
   const std::string where = "body `" + name + "`";
   nb::dict model, all = further_keys(keys, "body", where);
   model["model"] = "arrays";
@@ -244,8 +274,10 @@ int SceneObject::add_body_arrays(const nb::handle& x, const nb::handle& triangle
   return static_cast<int>(obstacles_.size()) - 1;
 }
 
-int SceneObject::add_obstacle_arrays(const nb::handle& x, const nb::handle& triangles, const std::string& name) {
+int SceneObject::add_obstacle_arrays(const nb::handle& x, const nb::handle& triangles,
+                                     const std::optional<std::string>& given_name) {
   must_be_open();
+  const std::string name = name_of(given_name, "obstacle", names_of_obstacles());
   const std::string noun = "obstacle `" + name + "`";
   Points first = points_of(x, noun + ", x");
   const Triangles faces = triangles_of(triangles, first.rows(), noun + ", triangles");

@@ -84,6 +84,7 @@ SceneObject::SceneObject(const std::filesystem::path& file, const nb::object& ov
     : setup_(read_setup(file, overrides_of(overrides), kinds_with(kinds, held_))) {
   warn(scene_warnings(setup_));
   state_ = prepared(setup_);
+  judged_ = state_.x;
   stepper_ = make_stepper(setup_);
 }
 
@@ -91,6 +92,7 @@ SteppedFrame SceneObject::next_frame(const StopFlag& stop) {
   auto turn = std::make_unique<SceneTurn>(turn_);
   begin();
   check_state(setup_.scene, state_);  // whose arrays Python may have written to
+  notice_writing();
   const Clock::time_point started = Clock::now();
   const double dt = 1 / setup_.run.fps;
   SteppedFrame made;
@@ -138,6 +140,7 @@ void SceneObject::record(const std::filesystem::path& folder) {
   info.contact_forces = stepper_->traits().reports_contact_forces;
   recording_.reset(new Recording{std::move(lock), TrajectoryWriter(folder / "run.h5", std::move(info)),
                                  energy_terms(setup_.scene, stepper_->traits())});
+  notice_writing();
   recording_->writer.append(record_initial(setup_.scene, recording_->terms, state_, setup_.drive_at(state_.time)));
 }
 
@@ -149,6 +152,7 @@ void SceneObject::end_recording() {
 void SceneObject::save(const std::filesystem::path& file) {
   ensure_begun();
   check_state(setup_.scene, state_);
+  notice_writing();
   write_checkpoint(file, state_, run_inputs(setup_));
 }
 
@@ -179,6 +183,17 @@ void SceneObject::restore(const std::filesystem::path& file) {
 State& SceneObject::state() {
   ensure_begun();
   return state_;
+}
+
+bool SceneObject::clean() {
+  ensure_begun();
+  if (!turn_) notice_writing();
+  return state_.clean;
+}
+
+int SceneObject::pairs() {
+  if (stepper_ && !turn_) notice_writing();
+  return pairs_;
 }
 
 const ContactForces* SceneObject::contact_forces() {
@@ -256,9 +271,16 @@ void SceneObject::begin() {
   setup_.initial = state_;
   setup_.followers = followers_of(cloths_, setup_.scene);
   if (frames > 0) state_ = prepared(setup_);
+  judged_ = state_.x;
   stepper_ =
       make_following_stepper(setup_.scene, setup_.followers,
                              decorated(setup_.scene, make_, {.cut = std::ranges::any_of(cloths_, &ClothPart::cut)}));
+  try {
+    check_accepted(setup_, stepper_->traits());
+  } catch (...) {
+    stepper_.reset();
+    throw;
+  }
 }
 
 Drive SceneObject::drive_of_arrays(double time) const {
@@ -294,6 +316,14 @@ void SceneObject::take_over(State next) {
   state_.x.swap(x);
   state_.v.swap(v);
   state_.obstacles.swap(obstacles);
+  judged_ = state_.x;
+}
+
+void SceneObject::notice_writing() {
+  if (state_.x == judged_) return;
+  state_.clean = false;
+  pairs_ = -1;
+  judged_ = state_.x;
 }
 
 }  // namespace selvedge

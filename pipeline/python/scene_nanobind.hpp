@@ -50,18 +50,22 @@ class SceneObject {
   SceneObject(const SceneObject&) = delete;
   SceneObject& operator=(const SceneObject&) = delete;
 
-  int add_cloth_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const std::string& name,
-                       std::optional<double> density, std::optional<double> youngs_modulus,
-                       std::optional<double> poisson, std::optional<double> bending, const nanobind::object& material,
-                       const nanobind::object& pins);
-  int add_garment_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const std::string& name,
-                         const nanobind::object& on, const nanobind::object& material, const std::string& fit,
-                         const nanobind::object& pins, const nanobind::kwargs& keys);
-  int add_obstacle_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const std::string& name);
+  // Cloths have names of their own, and so have obstacles. Without one they are `cloth`, `cloth_1` and so on.
+  int add_cloth_arrays(const nanobind::handle& x, const nanobind::handle& triangles,
+                       const std::optional<std::string>& name, std::optional<double> density,
+                       std::optional<double> youngs_modulus, std::optional<double> poisson,
+                       std::optional<double> bending, const nanobind::object& material, const nanobind::object& pins);
+  int add_garment_arrays(const nanobind::handle& x, const nanobind::handle& triangles,
+                         const std::optional<std::string>& name, const nanobind::object& on,
+                         const nanobind::object& material, const std::string& fit, const nanobind::object& pins,
+                         const nanobind::kwargs& keys);
+  int add_obstacle_arrays(const nanobind::handle& x, const nanobind::handle& triangles,
+                          const std::optional<std::string>& name);
   int add_body_arrays(const nanobind::handle& x, const nanobind::handle& triangles, const nanobind::handle& joints,
                       const nanobind::handle& weights, const nanobind::handle& parents, const nanobind::object& poses,
                       const nanobind::object& translations, double fps, const nanobind::object& joint_names,
-                      const std::string& name, const nanobind::object& room, const nanobind::kwargs& keys);
+                      const std::optional<std::string>& name, const nanobind::object& room,
+                      const nanobind::kwargs& keys);
   void move_obstacle(int number, const nanobind::handle& x);
 
   // The next frame. Changes nothing that others can see; several scenes may do this at once.
@@ -82,7 +86,9 @@ class SceneObject {
 
   const Scene& scene() const { return setup_.scene; }
   State& state();
-  int pairs() const { return pairs_; }
+  // Of the present positions: false and -1 after Python has written to them.
+  bool clean();
+  int pairs();
   const std::optional<StepReport>& report() const { return report_; }
   // Of the present state; null: not known. Throws Error if they were not asked for.
   const ContactForces* contact_forces();
@@ -108,7 +114,10 @@ class SceneObject {
   void ensure_begun();     // for who has it not
   Drive drive_of_arrays(double time) const;
   void add_part(ClothPart part);
+  std::vector<std::string> names_of_cloths() const;
+  std::vector<std::string> names_of_obstacles() const;
   void take_over(State next);
+  void notice_writing();
 
   HeldObjects held_ = std::make_shared<HeldObjects::element_type>();
   Setup setup_;
@@ -127,6 +136,7 @@ class SceneObject {
   std::optional<StepReport> report_;  // of the last step
   std::shared_ptr<const ContactForces> contact_forces_;
   int pairs_ = -1;
+  Points judged_;  // the positions that `clean` and pairs_ are of [m]
   std::unique_ptr<Recording> recording_;
   std::atomic<bool> turn_ = false;  // taken
 };

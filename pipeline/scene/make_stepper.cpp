@@ -74,7 +74,7 @@ void check_accepted(const Setup& setup, const StepperTraits& traits) {
   }
   if (!what.empty())
     throw Error("the stepper `" + traits.name + "` does not take this scene: " + what,
-                setup.file.string() + ": " + where, cure);
+                setup.file.empty() ? "scene: " + where : setup.file.string() + ": " + where, cure);
 }
 
 namespace {

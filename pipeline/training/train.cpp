@@ -10,6 +10,7 @@
 #include "collision/geometry/error.hpp"
 #include "collision/geometry/floating_point.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/host/folder_lock.hpp"
 #include "pipeline/host/numbers_json.hpp"
 #include "pipeline/host/version.hpp"
 #include "pipeline/host/write_file.hpp"
@@ -30,6 +31,7 @@ struct TrainingRun {
   const TrainRequest& request;
   TrainingOptions options;
   std::filesystem::path folder;
+  std::optional<FolderLock> lock;  // of the process that leads
   std::unique_ptr<Trainer> trainer;
   TrainingCounts counts;  // of all processes
   TrainingHistory history;
@@ -248,7 +250,10 @@ bool run_steps(TrainingRun& run) {
 
 void begin(TrainingRun& run) {
   make_folder(run.folder);
-  if (run.leads()) remove_file(pause_file(run.folder));
+  if (run.leads()) {
+    run.lock.emplace(run.folder);
+    remove_file(pause_file(run.folder));
+  }
   if (run.request.resume) {
     run.trainer =
         read_training_checkpoint(run.folder / "checkpoint.h5", run.options, run.history, run.request.processes);

@@ -201,8 +201,10 @@ void add_person(const SampleOptions& options, std::uint64_t seed, const Cast& ca
       if (split_of_wear(options.split, wear, options.folder) == Split::training)
         add_wear(options, who.body, wear_of(wear, options.folder, who, world.warnings), world);
   if (world.people.back().wear.empty() || cast.clips.empty())
-    from->fail("has nothing to train on: all that it wears, or all its clips, are held out by `split`",
-               "name the person in `split`, to hold it out as a whole");
+    from->fail(
+        "has nothing to train on: all that it wears, or all its clips, are held out, by `split` or by the program "
+        "(configs/outfits.yaml, configs/clips.yaml)",
+        "give it more of either, or name the person in `split`, to hold it out as a whole");
   const bool shapes = who.body.skin.shape_directions.cols() > 0;
   for (int k = 0; k < (shapes ? options.shapes : 1); ++k) add_shape(options, seed, k, cast, who, world);
   for (const std::string& warning : who.warnings)  // a clip that is read again warns again

@@ -73,6 +73,52 @@ def test_the_callback_ends_a_run():
     assert selvedge.simulate(falling(), 40, lambda s: s.frame < 3) == 3
 
 
+@pytest.mark.parametrize("stop", [False, np.False_])
+def test_a_callback_that_returns_false_ends_a_run(stop):
+    assert selvedge.simulate(falling(), 10, lambda s: stop if s.frame == 3 else None) == 3
+
+
+def test_written_positions_are_not_known_to_be_clean(tmp_path):
+    def two():
+        scene = selvedge.Scene()
+        for height in (0.3, 0.31):
+            scene.add_cloth(*sheet(6, 0.3, height))
+        return scene
+
+    scene = two()
+    assert scene.step() and scene.clean and scene.pairs == 0
+    crossed = scene.x.copy()
+    crossed[36:, 1] = 0.3 + 0.1 * (crossed[36:, 0] - 0.15)
+    scene.x = crossed
+    assert not scene.clean and scene.pairs == -1
+    scene.save(tmp_path / "crossed.h5")
+    fresh = two()
+    fresh.restore(tmp_path / "crossed.h5")
+    assert not fresh.clean
+    assert scene.step() and scene.report["pairs_before"] != 0  # it was looked for, and not taken for clean
+    scene.x[0, 1] += 0.01  # by the view
+    assert not scene.clean and scene.pairs == -1
+
+
+def test_names_are_free_ones_or_refused():
+    scene = selvedge.Scene()
+    for height in (0, 1):
+        scene.add_cloth(*sheet(2, 1, height))
+    scene.add_obstacle(*sheet(2, 1, -1), name="a")
+    assert [name for name, _, _ in scene.cloths] == ["cloth", "cloth_1"]
+    for add, name, words in [
+        (scene.add_cloth, "cloth", "the name `cloth` of another"),
+        (scene.add_obstacle, "a", "the name `a` of another"),
+        (scene.add_cloth, "", "is empty"),
+    ]:
+        with pytest.raises(selvedge.Error, match=words):
+            add(*sheet(2, 1, 2), name=name)
+
+
+def test_scenes_of_an_iterable_live_while_they_step():
+    assert selvedge.step(falling() for _ in range(8)) == [True] * 8
+
+
 def test_an_obstacle_moves():
     scene = falling()
     x, _ = sheet(2, 4.0)

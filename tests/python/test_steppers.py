@@ -137,6 +137,14 @@ def test_mistakes_in_a_stepper_say_what_and_where():
         selvedge.Scene(stepper=Thrown(None))
 
 
+@pytest.mark.parametrize("need", ["needs_worn", "needs_obstacles"])
+def test_what_it_needs_of_a_scene_of_arrays_is_asked_for(need):
+    scene = selvedge.Scene(stepper=type("Needy", (Thrown,), {need: True}))
+    scene.add_cloth(*square())
+    with pytest.raises(selvedge.Error, match="does not take this scene: it needs"):
+        scene.step()
+
+
 def test_forces_that_it_ignores_have_no_energy(scene_file, tmp_path):
     class Blind(Thrown):
         ignores = ("membrane",)

@@ -112,7 +112,7 @@ class Scene:
         x: npt.ArrayLike,
         triangles: npt.ArrayLike,
         *,
-        name: str = ...,
+        name: str | None = ...,
         density: float | None = ...,
         youngs_modulus: float | None = ...,
         poisson: float | None = ...,
@@ -129,7 +129,7 @@ class Scene:
         x: npt.ArrayLike,
         triangles: npt.ArrayLike,
         *,
-        name: str = ...,
+        name: str | None = ...,
         on: str | None = ...,
         material: Material | None = ...,
         fit: str = ...,
@@ -153,7 +153,7 @@ class Scene:
         translations: npt.ArrayLike | None = ...,
         fps: float = ...,
         joint_names: Sequence[str] | None = ...,
-        name: str = ...,
+        name: str | None = ...,
         room: float | str | None = ...,
         **keys: Any,
     ) -> int:
@@ -163,7 +163,7 @@ class Scene:
         relative to the parent [rad]; translations, frames x 3 [m]; fps. Without poses it stands in the zero pose.
         room: the gap that soft tissue keeps open between parts of the body [m], 0: none. keys: further keys of
         `obstacles` in scene files, such as translate."""
-    def add_obstacle(self, x: npt.ArrayLike, triangles: npt.ArrayLike, *, name: str = ...) -> int:
+    def add_obstacle(self, x: npt.ArrayLike, triangles: npt.ArrayLike, *, name: str | None = ...) -> int:
         """Appends an obstacle and returns its number. x: positions, n x 3 [m]; triangles: m x 3, counter-clockwise seen
         from outside."""
     def move_obstacle(self, number: int, x: npt.ArrayLike) -> None:
@@ -211,10 +211,10 @@ class Scene:
         """Steps made so far."""
     @property
     def clean(self) -> bool:
-        """Known to be free of intersections."""
+        """Known to be free of intersections. False after positions were written, until the next step."""
     @property
     def pairs(self) -> int:
-        """Intersecting pairs of triangles after the last step; -1: not known."""
+        """Intersecting pairs of triangles after the last step; -1: not known, as after positions were written."""
     @property
     def report(self) -> Report:
         """What came of the last step, accepted or rejected, by the names of docs/files.md; empty before one."""

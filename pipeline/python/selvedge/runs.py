@@ -9,6 +9,8 @@ import pathlib
 from collections.abc import Callable, Iterable
 from typing import SupportsIndex
 
+import numpy as np
+
 from ._selvedge import Error, Scene, export_run, page_of
 from .progress import progress_bar
 
@@ -36,7 +38,8 @@ def simulate(
             while scene.frame < frames and scene.step():
                 if show is not None:
                     show(scene.frame - first, frames - first)
-                if callback is not None and callback(scene) is False:
+                said = None if callback is None else callback(scene)
+                if isinstance(said, bool | np.bool_) and not said:
                     break
     finally:
         if out is not None:

@@ -94,6 +94,15 @@ TEST_CASE("audit memory: an audit with it finds what one without it finds", "[au
   CHECK(passed > 100);
 }
 
+TEST_CASE("audit memory: cloth that lies in one point, and stays, is not forgotten", "[audit_memory]") {
+  AtRest rest;
+  AuditMemory memory;
+  rest.x.setConstant(0.05);
+  const Audit plain = rest.state(nullptr);
+  CHECK(plain.intersecting_pairs() > 100);
+  for (int frame = 0; frame < 3; ++frame) same(rest.state(&memory), plain);
+}
+
 TEST_CASE("audit memory: a state at the end of a fast motion is not remembered, one after a slow motion is",
           "[audit_memory]") {
   AtRest rest;

@@ -149,7 +149,7 @@ TEST_CASE("bad input ends with status 2 and says what, where and the cure") {
            {"push " + mesh + " " + mesh + " --out b.obj --margin inf", "--margin: is `inf`; give"},
            {"dress " + mesh + " --body absent.h5 --out b.h5", "absent.h5\n  cure: check the path"},
            {"dress " + mesh + " --time 1 --out b.h5", "--time requires --pose"},
-           {"export run.h5 --cloth a", "--cloth requires --onto"}}) {
+           {"weights halve " + mesh + " --out " + mesh, "a.obj: is the file that is read"}}) {
     const Ended outcome = selvedge_program(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.status == 2);

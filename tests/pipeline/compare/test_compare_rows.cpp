@@ -328,11 +328,14 @@ TEST_CASE("compare: rows of networks step once a frame, and what failed is said 
   request.file = fake::write(folder, "comparison.yaml",
                              "scenes: [{name: hanging, file: hanging.yaml, states: 0}]\nrepeats: 1\njudged_frames: 0\n"
                              "settings: [{name: a, stepper: learned, weights: w.h5}, {name: b, stepper: learned, "
-                             "weights: spoiled.h5}, {name: c, stepper: learned, weights: w.h5, set: [run.fps=60]}]\n");
+                             "weights: spoiled.h5}, {name: c, stepper: learned, weights: w.h5, set: [run.fps=60]}, "
+                             "{name: d, weights: w.h5}, {name: e, set: [run.fps=60]}]\n");
   request.out = folder.path / "out";
   const CompareResult result = compare(request);
   CHECK(row_named(result, "a").dt == Approx(1.0 / 30));
   CHECK_THAT(row_named(result, "c").trouble, Contains("60 frames a second; cure: give fps: 30"));
+  CHECK_THAT(row_named(result, "d").trouble, Contains("`weights` has no part in the stepper `conventional`"));
+  CHECK_THAT(row_named(result, "e").trouble, Contains("makes 60 frames a second, and the scene 30"));
   CHECK_THAT(fake::whole(request.out / "compare.html"), Contains("<li>b: hanging: rejects a step after frame 0"));
 }
 

@@ -7,6 +7,7 @@
 
 #include "collision/geometry/error.hpp"
 #include "learned/network/weights_hdf5.hpp"
+#include "pipeline/host/folder_lock.hpp"
 #include "pipeline/training/train.hpp"
 #include "pipeline/training/training_checkpoint_hdf5.hpp"
 #include "tests/pipeline/files.hpp"
@@ -183,6 +184,10 @@ TEST_CASE("training: a run leaves its files, and one that is stopped goes on", "
   CHECK(stopped.counts.step == 10);
   request.resume = true;
   request.stop = {};
+  {
+    const FolderLock other(request.out);
+    CHECK_THROWS_WITH(train(request), Catch::Contains("another run writes into this folder"));
+  }
   const TrainSummary finished = train(request);
   CHECK(finished.finished);
   CHECK(finished.counts.step == 24);
