@@ -72,6 +72,7 @@ class ConventionalStepper final : public Stepper {
 
  private:
   StepReport take_step(const State& from, const Drive& drive, double dt, State& to, const StepExtras& extras);
+  StepReport take_substeps(const State& from, const Drive& drive, double dt, int planned, State& to, const StepExtras&);
   bool has_contact() const { return features_.self_contact || features_.obstacles; }
   ResolveOptions resolve_options(const StepWork&) const;
   StepProblem problem_of(const StepWork&, const StepStart&, const Points& pins, const AddedTerm&) const;
@@ -396,6 +397,17 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
     report.collision.jumped = restart->jumped;
     return report;
   }
+  const int planned = planned_substeps(dt), more = options_.max_substeps;
+  StepReport report = take_substeps(from, drive, dt, planned, to, extras);
+  if (!report.out_of_response || more <= planned || stopped(extras.stop)) return report;
+  StepReport again = take_substeps(from, drive, dt, more, to, extras);
+  again.seconds += report.seconds;
+  again.counts += report.counts;
+  return again;
+}
+
+StepReport ConventionalStepper::take_substeps(const State& from, const Drive& drive, double dt, int planned, State& to,
+                                              const StepExtras& extras) {
   StepReport report;
   report.by = traits_.name;
   report.collision.pairs_before = from.clean ? 0 : -1;
@@ -410,7 +422,6 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
   if (has_contact()) begin_contact(work, now.nodes);
   if (work.left_alone.any()) now.history = {};
   if (options_.guess == FirstGuess::carried && !extras.guess) work.carried = carried_guess(scene_, from, drive, dt);
-  const int planned = planned_substeps(dt);
   // An obstacle that had no room will hardly have room now.
   const int halvings = from.pinched ? 0 : options_.substep.max_halvings,
             parts = options_.substeps ? 1 : options_.max_substeps / planned;
@@ -431,16 +442,6 @@ StepReport ConventionalStepper::take_step(const State& from, const Drive& drive,
 }
 
 }  // namespace
-
-// Measured in docs/benchmarks.md.
-ConventionalOptions one_rough_solve(ConventionalOptions options) {
-  options.substeps = 1;
-  options.implicit_euler.max_newton = 2;
-  options.implicit_euler.relative_tolerance = 0.03;
-  options.implicit_euler.max_newton_step = 16;
-  options.substep.max_passes = 0;
-  return options;
-}
 
 std::unique_ptr<Stepper> make_conventional_stepper(const Scene& scene, const ConventionalOptions& options) {
   return std::make_unique<ConventionalStepper>(scene, options);

@@ -34,10 +34,8 @@ struct ConventionalOptions {
   const char* name = "conventional";  // of the stepper, in reports
 };
 
-// The same options for one rough solve a frame and then the response to contact, as `run.quality: draft` solves.
-ConventionalOptions one_rough_solve(ConventionalOptions);
-
-// Implicit Euler or BDF2, then the response to contact in Bridson's order. Keeps a reference to the scene.
+// Implicit Euler or BDF2, then the response to contact in Bridson's order. A step whose response spends its budget is
+// taken again in shorter substeps. Keeps a reference to the scene.
 std::unique_ptr<Stepper> make_conventional_stepper(const Scene&, const ConventionalOptions&);
 
 }  // namespace selvedge

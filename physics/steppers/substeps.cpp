@@ -16,7 +16,10 @@ int parts(double distance, double longest, int least, int most) {
 
 }  // namespace
 
-int least_substeps(double dt, const SubstepOptions& options) { return dt > options.longest ? 2 : 1; }
+int least_substeps(double dt, const SubstepOptions& options) {
+  constexpr double slightly = 0.05;  // longer than the longest is allowed: film has 23.976 frames a second
+  return static_cast<int>(std::clamp(std::ceil(dt / options.longest - slightly), 1.0, 1e6));
+}
 
 int substeps_for_speed(const State& from, const Drive& drive, double dt, double edge_length, int max_substeps,
                        const SubstepOptions& options) {

@@ -22,7 +22,7 @@ struct SubstepState {
 };
 
 // Numbers of substeps for a step of dt [s]. edge_length: the mean one [m]; speeds in m/s.
-// At least two for a step that is longer than the longest substep.
+// Enough that none is longer than SubstepOptions::longest, by more than a twentieth of it.
 int least_substeps(double dt, const SubstepOptions&);
 // Enough to keep every vertex's motion in a substep within a few mesh edges, and at least least_substeps.
 int substeps_for_speed(const State& from, const Drive&, double dt, double edge_length, int max_substeps,

@@ -192,11 +192,14 @@ const OptionRows<ConventionalOptions>& substep_count_options() {
                       "Number of time steps in a frame. `auto` chooses it from the speed of what touches, for `icm` "
                       "from the largest speed of all."),
               "auto"),
-      or_word(integer("min_substeps", &O::min_substeps, at_least_one,
-                      "Smallest number of substeps that `auto` chooses. `auto`, which `icm` always has: 2 if a frame "
-                      "is longer than `solver.substep.longest`, else 1."),
-              "auto"),
-      integer("max_substeps", &O::max_substeps, at_least_one, "Largest number of substeps that `auto` chooses.")};
+      or_word(
+          integer("min_substeps", &O::min_substeps, at_least_one,
+                  "Smallest number of substeps that `auto` chooses. `auto`, which `icm` always has: as many as keep "
+                  "a substep within `solver.substep.longest`."),
+          "auto"),
+      integer("max_substeps", &O::max_substeps, at_least_one,
+              "Largest number of substeps that `auto` chooses. A frame whose response runs out of its budget is made "
+              "again with so many, also where `substeps` is a number.")};
   return rows;
 }
 

@@ -45,8 +45,8 @@ const Options<SubstepOptions>& substep_options() {
   static const Options<O> table(
       "substep", "How a step is divided into substeps, and how a substep alternates solves with the contact response.",
       {number("longest", &O::longest, Unit::time, positive,
-              "Longest step that may stay undivided, since implicit Euler damps longer ones visibly. A longer one "
-              "takes at least two substeps."),
+              "Longest substep that `auto` chooses, since implicit Euler damps longer ones visibly, and fast bodies "
+              "leave contact too much to resolve in them."),
        number("first_tolerance", &O::first_tolerance, Unit::none, positive,
               "Factor on the tolerance of the first solve, which only finds impacts and normal forces."),
        number("friction_tolerance", &O::friction_tolerance, Unit::none, positive,

@@ -9,6 +9,7 @@
 #include "physics/steppers/carried_stepper.hpp"
 #include "physics/steppers/decorated_stepper.hpp"
 #include "physics/steppers/hybrid_stepper.hpp"
+#include "physics/steppers/one_rough_solve.hpp"
 #include "pipeline/scene/kinds.hpp"
 #include "pipeline/scene/make_stepper.hpp"
 #include "pipeline/weights/carried_model_hdf5.hpp"

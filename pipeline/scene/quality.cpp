@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/one_rough_solve.hpp"
 
 namespace selvedge {
 namespace {

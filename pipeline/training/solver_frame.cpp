@@ -4,6 +4,7 @@
 
 #include "learned/steppers/learned_state.hpp"
 #include "physics/steppers/conventional_stepper.hpp"
+#include "physics/steppers/one_rough_solve.hpp"
 #include "physics/steppers/recovering_stepper.hpp"
 #include "physics/steppers/response_stepper.hpp"
 #include "pipeline/training/simulate_frames.hpp"

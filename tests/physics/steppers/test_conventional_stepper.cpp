@@ -136,7 +136,7 @@ TEST_CASE("conventional stepper: the path that is audited ends where cloth and o
 
 // A sheet of which the first row is pinned and driven into what lies below it, by `depth` in so many frames and back.
 struct Drawn {
-  int out_of_response = 0, pairs = 0, shortened = 0;
+  int out_of_response = 0, pairs = 0, shortened = 0, substeps = 0;
   std::int64_t swept = 0, projected = 0;  // of a frame, at most
   double lag = 0, off = 0;                // obstacles; pins in the last frame [m]
   Points lowest;                          // pins where they were lowest
@@ -155,6 +155,7 @@ Drawn drawn(World w, int pinned, double depth, int frames, const ConventionalOpt
     const StepReport report = testing::frame(w.scene, *stepper, state, w.drive, 1.0 / 30, to);
     REQUIRE(report.status == StepStatus::accepted);
     d.out_of_response += report.out_of_response;
+    d.substeps = std::max(d.substeps, report.substeps);
     d.pairs += report.collision.pairs_after + report.collision.passed_through;
     d.shortened += report.collision.shortened;
     d.lag = std::max(d.lag, report.collision.obstacle_lag);
@@ -187,11 +188,20 @@ TEST_CASE("conventional stepper: pins that cannot all be where they are wanted a
   for (int v = 36; v < 72; ++v) w.scene.pins.push_back(v);
   ConventionalOptions options;
   options.resolve.budget = {1000, 1000};
+  options.max_substeps = 2;
   const Drawn d = drawn(w, 6, 0.3, 4, options);
   CHECK(d.out_of_response > 0);
   CHECK(d.pairs == 0);
   CHECK(d.shortened > 0);
   CHECK(d.projected < 2 * options.resolve.budget.projected);
+
+  // What runs out of its budget is tried once more, in as many substeps as there may be.
+  options.max_substeps = 12;
+  const Drawn again = drawn(w, 6, 0.3, 4, options);
+  CHECK(d.substeps < 12);
+  CHECK(again.substeps >= 12);
+  CHECK(again.pairs == 0);
+  CHECK(again.projected < 4 * options.resolve.budget.projected);
 }
 
 TEST_CASE("conventional stepper: pins of one cloth that are brought to one place stay apart, and the cloth goes on",

@@ -3,6 +3,7 @@
 #include "collision/geometry/error.hpp"
 #include "physics/steppers/finish_step.hpp"
 #include "physics/steppers/icm_stepper.hpp"
+#include "physics/steppers/one_rough_solve.hpp"
 #include "physics/steppers/proposal_trust.hpp"
 #include "tests/frame.hpp"
 #include "tests/physics/spoiled_steps.hpp"
