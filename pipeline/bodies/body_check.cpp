@@ -68,7 +68,7 @@ void check_weights(const Checker& check, const BodyFields& names, const SkinWeig
   }
 }
 
-// A joint is a mean of vertices: with another sum it would move otherwise than the body where that is moved.
+// A joint is a weighted mean of vertices. If the weights do not sum to 1, it does not follow a body that is moved.
 void check_regressor(const Checker& check, const BodyFields& names, const SkinWeights& regressor) {
   for (Eigen::Index j = 0; j < regressor.rows(); ++j) {
     if (!SkinWeights::InnerIterator(regressor, j))

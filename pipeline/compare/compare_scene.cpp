@@ -26,7 +26,7 @@ std::string missing_part(const CompareSetting& setting, const Kinds& kinds) {
   return "left out: there is no weight file " + setting.weights.string();
 }
 
-// Why a setting that was read is no row of the scene; empty: it is one.
+// Why a setting is left out after it is read; empty: it is not.
 std::string unfit(const CompareSetting& setting, const Setup& setup, const Setup& reference) {
   if (setup.run.fps != reference.run.fps)
     return fmt::format("left out: it makes {:g} frames a second, and the scene {:g}", setup.run.fps, reference.run.fps);
