@@ -14,7 +14,7 @@ struct PathPairs {
   Points cloth_end;  // of the cloth's vertices, for pairs of the cloth with itself
   std::vector<NodePair> pairs;
   std::vector<double> gap;  // a lower bound (PairSearch::find_near) [m]
-  double reach = 0;         // every pair that comes within it on the way to these ends is listed [m]
+  double reach = 0;         // every pair that comes within it is listed [m]; more than the thickness asked for
 };
 
 // Makes `path` valid for the motion x0 -> x1: it lists every pair that comes within `thickness` [m] during the motion.
@@ -29,8 +29,8 @@ bool update_pairs(PairSearch&, double thickness, const Points& x0, const Points&
 // Contact may push a vertex within this many thicknesses.
 inline constexpr double contact_reach = 2;
 
-// Whether a listed pair touches: it is within `reach` at x0 or at x1. This does not depend on what else the list has,
-// nor on the motions for which it was made, if it is valid for this reach and motion. Keeps references.
+// Whether listed pairs touch: are within `reach` at x0 or at x1. So a list that is valid for this reach and motion may
+// have further pairs. Keeps references.
 class TouchTest {
  public:
   TouchTest(const PathPairs&, double reach, const Points& x0, const Points& x1);
